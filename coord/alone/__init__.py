@@ -1,0 +1,1 @@
+"""One robot on one path with nobody else: the fastest profile and its bounds."""

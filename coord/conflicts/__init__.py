@@ -1,0 +1,1 @@
+"""Who can meet whom, where in the coordination plane, and when."""

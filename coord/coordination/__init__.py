@@ -1,0 +1,1 @@
+"""Who goes first, and the loop over all robots."""

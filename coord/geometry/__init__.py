@@ -1,0 +1,1 @@
+"""The door of shapely: growth of obstacles, distances, spatial indexes."""

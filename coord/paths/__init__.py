@@ -1,0 +1,1 @@
+"""The geometry of the way: shortest tangent paths round grown obstacles."""

@@ -1,0 +1,1 @@
+"""Files into problems: problem files, maps."""

@@ -1,0 +1,1 @@
+"""The doors of the optimisation libraries; nothing else imports them."""

@@ -1,0 +1,1 @@
+"""One robot's velocity profile against those planned before it."""
