@@ -49,10 +49,7 @@ class Polygon:
         faults = [("polygon", fault) for ring in rings if (fault := _ring_fault(ring))]
         if faults:
             raise InvalidValueError(faults)
-        rings = [
-            ring if (signed_area(ring) > 0) == (k == 0) else frozen(ring[::-1], 2)
-            for k, ring in enumerate(rings)
-        ]
+        rings = [ring if (signed_area(ring) > 0) == (k == 0) else frozen(ring[::-1], 2) for k, ring in enumerate(rings)]
         object.__setattr__(self, "vertices", rings[0])
         object.__setattr__(self, "holes", tuple(rings[1:]))
 
@@ -77,9 +74,7 @@ def rectangle(name: str, bounds: tuple[float, float, float, float], angle: float
     corners = [(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax)]
     if angle:
         cx, cy, c, s = (xmin + xmax) / 2, (ymin + ymax) / 2, math.cos(angle), math.sin(angle)
-        corners = [
-            (cx + c * (x - cx) - s * (y - cy), cy + s * (x - cx) + c * (y - cy)) for x, y in corners
-        ]
+        corners = [(cx + c * (x - cx) - s * (y - cy), cy + s * (x - cx) + c * (y - cy)) for x, y in corners]
     return Polygon(name, frozen(corners, 2))
 
 

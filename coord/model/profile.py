@@ -66,6 +66,4 @@ def advance(states: Array, jerks: Array, durations: Array) -> Array:
     """States (m, 3) after constant jerks (m,) held for durations (m,)."""
     s, v, a = states.T
     j, h = jerks, durations
-    return np.stack(
-        [s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j], axis=1
-    )
+    return np.stack([s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j], axis=1)
