@@ -31,13 +31,14 @@ class Diagnosis:
 class BlockingArc:
     """``first`` must be planned before ``then``.
 
-    ``at`` is "start" when first's start stands in then's way, "goal" when then would park in first's way.
+    ``at`` is "start" when first's start stands in then's way, "goal" when then would park in first's way;
+    ``place`` is where [m], None in a plan read from a file, which does not keep it.
     """
 
     first: str
     then: str
     at: str
-    place: Point
+    place: Point | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,86 @@
+"""How fast a path may be driven: bends cap the speed through the lateral acceleration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from coord.model.arrays import Array, frozen
+from coord.model.path import Path
+from coord.model.robot import Limits
+
+#: A clothoid is cut where the cap has changed by this factor; within a cut the lowest cap holds.
+_CAP_RATIO = 1.05
+
+#: A clothoid is cut into at most this many sections.
+_MOST_CUTS = 24
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpeedLimit:
+    """Speed caps along a path: section m reaches from ``ends[m-1]`` (0 for the first) to ``ends[m]`` [m].
+
+    ``caps`` : (m,) largest speed [m/s]: min(speed, sqrt(lateral_acceleration / |curvature|)), the lowest of
+    the section where the curvature varies. Neighbours with the same cap are one section.
+    """
+
+    ends: Array
+    caps: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ends", frozen(self.ends))
+        object.__setattr__(self, "caps", frozen(self.caps))
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether one cap holds along the whole path."""
+        return len(self.caps) <= 1
+
+    def lowest(self, s_from: Array, s_to: Array) -> Array:
+        """Lowest caps (m,) [m/s] on the closed intervals from s_from (m,) to s_to (m,) [m]."""
+        last = len(self.caps) - 1
+        first = np.minimum(np.searchsorted(self.ends, s_from, side="left"), last)
+        final = np.minimum(np.searchsorted(self.ends, s_to, side="right"), last)
+        return np.array([self.caps[i : k + 1].min() for i, k in zip(first, np.maximum(final, first), strict=True)])
+
+
+def speed_limit(path: Path, limits: Limits) -> SpeedLimit:
+    """The caps that the lateral acceleration sets along a path."""
+    ends: list[float] = []
+    caps: list[float] = []
+    position = 0.0
+    for length, k0, k1 in path.pieces.tolist():
+        for cut, cap in _cuts(length, k0, k1, limits):
+            if caps and caps[-1] == cap:
+                ends[-1] = position + cut
+            else:
+                ends.append(position + cut)
+                caps.append(cap)
+        position += length
+    if ends:
+        ends[-1] = path.length
+    return SpeedLimit(frozen(ends), frozen(caps))
+
+
+def cap(curvature: float, limits: Limits) -> float:
+    """Largest speed [m/s] at a curvature [1/m]."""
+    if limits.speed**2 * abs(curvature) <= limits.lateral_acceleration:
+        return limits.speed
+    return math.sqrt(limits.lateral_acceleration / abs(curvature))
+
+
+def _cuts(length: float, k0: float, k1: float, limits: Limits) -> list[tuple[float, float]]:
+    """Ends within the piece and caps of its cuts."""
+    low, high = sorted((cap(k0, limits), cap(k1, limits)))
+    if k0 * k1 < 0:
+        high = limits.speed
+    if high <= low * (1 + 1e-12):
+        return [(length, low)]
+    count = min(_MOST_CUTS, math.ceil(math.log(high / low) / math.log(_CAP_RATIO)) + 1)
+    edges = [k / count for k in range(count + 1)]
+    return [
+        (length * after, cap(max(abs(k0 + (k1 - k0) * before), abs(k0 + (k1 - k0) * after)), limits))
+        for before, after in zip(edges[:-1], edges[1:], strict=True)
+    ]

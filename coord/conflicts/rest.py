@@ -1,0 +1,98 @@
+"""Does a path run over a place where another robot rests? Exact, because the arrival guarantee rests on it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from coord.model.arrays import Array, Point
+from coord.model.path import Path
+from coord.tolerances import DISTANCE
+
+#: Pieces with varying curvature are halved until the distance is known to this [m].
+_KNOWN = DISTANCE / 4
+
+
+def closest(path: Path, place: Point) -> tuple[float, float]:
+    """Least distance [m] between a path and a place, and an arc length [m] where it is reached.
+
+    Exact on lines and arcs; on pieces of varying curvature within a quarter of the tolerance of distances.
+    """
+    target = np.array(place)
+    best = (float(np.hypot(*(path.poses[0, :2] - target))), 0.0)
+    pieces = path.pieces
+    arcs = np.flatnonzero(pieces[:, 1] != 0) if len(pieces) else np.array([], dtype=np.intp)
+    lines = np.flatnonzero(~pieces[:, 1:].any(axis=1)) if len(pieces) else arcs
+    for k, (distance, u) in zip(lines.tolist(), _lines(path, lines, target), strict=True):
+        best = min(best, (distance, float(path.breaks[k]) + u))
+    for k in [k for k in range(len(pieces)) if k not in set(lines.tolist())]:
+        length, k0, k1 = pieces[k].tolist()
+        distance, u = _arc(path.poses[k].tolist(), length, k0, place) if k0 == k1 else _bent(path, k, place, best[0])
+        best = min(best, (distance, float(path.breaks[k]) + u))
+    return best
+
+
+def runs_over(path: Path, place: Point, distance: float) -> float | None:
+    """The arc length at which a path comes closest to a place, if closer than ``distance`` [m]; else None.
+
+    Touching exactly is not closer.
+    """
+    least, s = closest(path, place)
+    return s if least < distance - DISTANCE else None
+
+
+def _lines(path: Path, index: Array, target: Array) -> list[tuple[float, float]]:
+    """Distances and arc lengths within the pieces of the points closest to the target, for straight pieces."""
+    poses, length = path.poses[index], path.pieces[index, 0]
+    direction = np.stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])], axis=1)
+    gap = target - poses[:, :2]
+    u = np.clip((gap * direction).sum(axis=1), 0.0, length)
+    distance = np.hypot(*(gap - direction * u[:, None]).T)
+    return list(zip(distance.tolist(), u.tolist(), strict=True))
+
+
+def _arc(pose: list[float], length: float, curvature: float, place: Point) -> tuple[float, float]:
+    """The closest point of an arc: on the ray from its centre, or an end."""
+    x, y, heading = pose
+    radius = 1 / abs(curvature)
+    side = math.copysign(1.0, curvature)
+    cx, cy = x - side * radius * math.sin(heading), y + side * radius * math.cos(heading)
+    turn = length * abs(curvature)
+    start = math.atan2(y - cy, x - cx)
+    toward = math.atan2(place[1] - cy, place[0] - cx)
+    from_start = (side * (toward - start)) % (2 * math.pi)
+    options = [0.0, turn] + ([from_start] if from_start <= turn else [])
+
+    def distance(angle: float) -> float:
+        at = start + side * angle
+        return math.hypot(cx + radius * math.cos(at) - place[0], cy + radius * math.sin(at) - place[1])
+
+    best = min(options, key=distance)
+    return distance(best), best * radius
+
+
+def _bent(path: Path, k: int, place: Point, bound: float) -> tuple[float, float]:
+    """The closest point of a piece of varying curvature: halve where the chord cannot exclude a better one."""
+    bend = float(np.abs(path.pieces[k, 1:]).max())
+    base, length = float(path.breaks[k]), float(path.pieces[k, 0])
+    best = (math.inf, 0.0)
+    open_parts = [(0.0, length)]
+    while open_parts:
+        u = np.array(open_parts)
+        at = path.point(base + u.ravel()).reshape(-1, 2, 2)
+        gap = at - np.array(place)
+        ends = np.hypot(gap[..., 0], gap[..., 1])
+        along = at[:, 1] - at[:, 0]
+        share = np.clip(-(gap[:, 0] * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0.0, 1.0)
+        chord = np.hypot(*(gap[:, 0] + along * share[:, None]).T)
+        for pair, distances in zip(open_parts, ends.tolist(), strict=True):
+            best = min(best, *zip(distances, pair, strict=True))
+        reachable = chord - bend * (u[:, 1] - u[:, 0]) ** 2 / 8
+        halve = reachable < min(best[0], bound) - _KNOWN
+        open_parts = [
+            part
+            for first, last in u[halve].tolist()
+            for part in ((first, (first + last) / 2), ((first + last) / 2, last))
+        ]
+    return best

@@ -1,0 +1,44 @@
+"""Sentences for people: why there is no plan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coord.model.arrays import Point
+from coord.model.result import BlockingArc, Diagnosis
+
+
+def cycle(arcs: Sequence[BlockingArc]) -> Diagnosis:
+    """Robots that all wait for each other."""
+    names = tuple(dict.fromkeys(arc.first for arc in arcs))
+    reasons = "; ".join(_reason(arc) for arc in arcs)
+    who = " and ".join(f'"{name}"' for name in names) if len(names) < 3 else ", ".join(f'"{name}"' for name in names)
+    text = (
+        f"{who} block each other on their paths, so that none can go first: {reasons}. "
+        "With these paths no order lets all of them arrive one after the other."
+    )
+    remedy = f'Move the start or goal of one of them off the others\' paths, for example that at {_at(arcs[0].place)}.'
+    return Diagnosis("blocking-cycle", names, text, arcs[0].place, None, remedy)
+
+
+def stuck(name: str, others: Sequence[str], place: Point) -> Diagnosis:
+    """A robot for which no waiting helps: a defect of the order, said rather than hidden."""
+    who = ", ".join(f'"{other}"' for other in others)
+    text = f'"{name}" cannot pass {who}, however long it waits at its start {_at(place)}.'
+    return Diagnosis("never-free", (name, *others), text, place, None, "Give it a higher priority.")
+
+
+def time_is_up(limit: float, planned: int, total: int) -> Diagnosis:
+    """The time limit came before the first whole plan."""
+    text = f"The time limit of {limit:g} s ended the run after {planned} of {total} robots, before there was a plan."
+    return Diagnosis("time-limit", (), text, None, None, "Allow more time.")
+
+
+def _reason(arc: BlockingArc) -> str:
+    if arc.at == "start":
+        return f'"{arc.first}" stands at {_at(arc.place)} in the way of "{arc.then}" and would have to leave first'
+    return f'"{arc.then}" would park at {_at(arc.place)} in the way of "{arc.first}", which would have to pass first'
+
+
+def _at(place: Point) -> str:
+    return f"({place[0]:.2f}, {place[1]:.2f})"

@@ -1,0 +1,18 @@
+"""Which of many boxes are near each other: the spatial index."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from coord.model.arrays import Array
+
+
+def touching_boxes(boxes: Array) -> npt.NDArray[np.intp]:
+    """Pairs (m, 2) of indices i < k of boxes (n, 4: xmin, ymin, xmax, ymax) that touch, in ascending order."""
+    tree = shapely.STRtree(shapely.box(*boxes.T))
+    first, second = tree.query(tree.geometries, predicate="intersects")
+    pairs = np.stack([first, second], axis=1)
+    pairs = pairs[first < second]
+    return np.asarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])

@@ -1,0 +1,64 @@
+"""How a plan is to be made: the flags of the plan command and the [plan] table of a problem."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from coord.errors import InvalidValueError
+
+_CHOICES = {
+    "method": ("velocity",),
+    "shape": ("taut",),
+    "order": ("priority",),
+    "profile": ("fastest",),
+}
+
+#: Values that the contract names and later work brings.
+_LATER = {
+    "method": ("stop", "nearest"),
+    "shape": ("fitted", "exponential", "follow"),
+    "order": ("longest", "shortest", "heading", "random", "search"),
+    "profile": ("gentle",),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Planning options.
+
+    Parameters
+    ----------
+    method : "velocity": by priority, the later robot changes its velocity.
+    shape : "taut": the shortest way of arcs and tangents.
+    order : "priority": the user's priorities, else the longest alone first.
+    profile : "fastest": each robot arrives as early as it can.
+    time_limit : wall time [s] after which the search ends; None for no limit.
+    gap_target : the search ends at this gap; None for no target.
+    seed : of every random draw.
+    """
+
+    method: str = "velocity"
+    shape: str = "taut"
+    order: str = "priority"
+    profile: str = "fastest"
+    time_limit: float | None = None
+    gap_target: float | None = None
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        faults = []
+        for field, choices in _CHOICES.items():
+            value = getattr(self, field)
+            if value not in choices:
+                later = "is not supported yet" if value in _LATER[field] else "is unknown"
+                known = ", ".join(f'"{choice}"' for choice in choices)
+                faults.append((field, f'{field} "{value}" {later}; it can be {known}'))
+        for field, unit in (("time_limit", " s"), ("gap_target", "")):
+            number = getattr(self, field)
+            if number is not None and not (math.isfinite(number) and number > 0):
+                faults.append((field, f"{field} must be > 0{unit} (got {number:g})"))
+        if self.seed < 0:
+            faults.append(("seed", f"seed must be >= 0 (got {self.seed})"))
+        if faults:
+            raise InvalidValueError(faults)

@@ -1,0 +1,37 @@
+"""Pictures of plans. Only this package knows matplotlib; it is slow to import, so import this where it is used."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from coord.model.result import Plan
+from coord.output.plots.profiles import profiles
+from coord.output.plots.st import st
+from coord.output.plots.style import png
+from coord.output.plots.workspace import workspace
+
+__all__ = ["KINDS", "draw", "profiles", "st", "workspace"]
+
+#: What there is to draw.
+KINDS: Final = ("workspace", "profiles", "st")
+
+
+def draw(plan: Plan, what: str, robot: str | None = None) -> bytes:
+    """Draw a plan as a PNG file; the same plan gives the same bytes.
+
+    Parameters
+    ----------
+    what : "workspace" (where everybody drives), "profiles" (speed, acceleration and jerk over time) or
+        "st" (one robot's way between the robots planned earlier).
+    robot : the name of the robot to show; without it each picture chooses and says so.
+
+    Raises
+    ------
+    InvalidValueError
+        When no robot has this name, or ``what`` is none of the kinds.
+    """
+    if what == "profiles":
+        return png(lambda: profiles(plan, robot))
+    if what == "st":
+        return png(lambda: st(plan, robot))
+    return png(lambda: workspace(plan, robot))

@@ -1,0 +1,67 @@
+"""Where on its path a robot must not be, and when: the definition itself, sampled, for drawing only."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coord.model.arrays import Array
+from coord.model.result import Plan, RobotPlan
+from coord.output.plots.outlines import line
+
+#: Samples along each axis of a window.
+_SAMPLES = 400
+
+
+class Window(NamedTuple):
+    """One robot's part of the forbidden set: t (n,) [s], s (m,) [m], gap (m, n) [m], forbidden where negative."""
+
+    robot: RobotPlan
+    t: Array
+    s: Array
+    gap: Array
+
+
+def windows(plan: Plan, ego: RobotPlan, until: float) -> list[Window]:
+    """The windows of all robots planned earlier that ever come near, up to the time ``until`` [s]."""
+    names = plan.order[: plan.order.index(ego.robot.name)]
+    by_name = {robot.robot.name: robot for robot in plan.robots}
+    corners = _box(ego, 0.0)
+    result = []
+    for other in (by_name[name] for name in names):
+        reach = ego.robot.footprint.radius + other.robot.footprint.radius + plan.problem.workspace.clearance
+        box = _box(other, reach)
+        if np.all(box[0] <= corners[1]) and np.all(corners[0] <= box[1]):
+            window = _window(plan, ego, other, reach, until)
+            if window is not None:
+                result.append(window)
+    return result
+
+
+def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: float) -> Window | None:
+    """Sample coarsely to find where the two come near each other, then finely there."""
+    end = other.arrival if plan.problem.workspace.after_arrival == "leave" else until
+    if end <= 0 or ego.path.length == 0:
+        return None
+    t_range, s_range = (0.0, min(end, until)), (0.0, ego.path.length)
+    for _ in range(2):
+        t, s = np.linspace(*t_range, _SAMPLES), np.linspace(*s_range, _SAMPLES)
+        here, there = ego.path.point(s), other.path.point(other.profile.state(t)[:, 0])
+        gap = np.hypot(here[:, None, 0] - there[:, 0], here[:, None, 1] - there[:, 1]) - reach
+        rows, columns = np.nonzero(gap.min(axis=1) < 0.1 * reach)[0], np.nonzero(gap.min(axis=0) < 0.1 * reach)[0]
+        if not len(rows):
+            return None
+        t_range, s_range = _widened(t, columns), _widened(s, rows)
+    return Window(other, t, s, gap) if gap.min() < 0 else None
+
+
+def _widened(values: Array, chosen: npt.NDArray[np.intp]) -> tuple[float, float]:
+    first, last = max(int(chosen[0]) - 1, 0), min(int(chosen[-1]) + 1, len(values) - 1)
+    return float(values[first]), float(values[last])
+
+
+def _box(robot: RobotPlan, margin: float) -> Array:
+    points = line(robot.path)[:, :2]
+    return np.stack([points.min(axis=0) - margin, points.max(axis=0) + margin])

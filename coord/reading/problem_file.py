@@ -1,0 +1,93 @@
+"""Problem files: TOML in the format coord-problem/1, with the map it names, into a problem."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from coord.errors import BadFileError, Fault, InvalidValueError
+from coord.model.problem import Problem
+from coord.reading.checks import check_rests
+from coord.reading.files import UnreadableError, read_bytes
+from coord.reading.floor import read_floor
+from coord.reading.form import FileForm, PlanForm, sound_fields
+from coord.reading.not_yet import without_refused
+from coord.reading.report import Report
+from coord.reading.robots import read_robots
+
+_LARGEST = 2**26
+
+
+def read_problem(path: Path) -> Problem:
+    """Read a problem file and the map it names, and check that it can be planned at all.
+
+    Robots and obstacles are counted from 1 in what people are told: ``robots[7]`` is the seventh [[robots]] of the
+    file. Lines are those of the value at fault, or of the table where something is missing. The problem's digest is
+    that of ``digest`` over the problem file, its map and its map's image.
+
+    Raises
+    ------
+    BadFileError
+        With all faults at once: form (keys, types, missing values), rules (a speed is positive), fields that are
+        not supported yet, and places: starts and goals outside the workspace, in an obstacle or overlapping.
+    """
+    path = Path(path)
+    try:
+        data = read_bytes(path, _LARGEST)
+    except UnreadableError as error:
+        raise BadFileError([Fault(str(path), None, "", f"the problem file {error}")]) from None
+    text, raw = _parse(str(path), data)
+    report = Report(str(path), text, raw)
+    top = without_refused("file", sound_fields(FileForm, raw, (), report), (), report)
+    if "format" not in raw:
+        report.add((), 'format is missing; the file should begin with format = "coord-problem/1"')
+    if raw.get("robots", []) == [] and "robots_file" not in raw:
+        report.add((), "a problem needs at least one robot, a table [[robots]] with name, start and goal")
+    options = sound_fields(PlanForm, top.get("plan", {}), ("plan",), report)
+    workspace = top.get("workspace", None if "workspace" in raw else {})
+    floor = read_floor(workspace, top.get("obstacles", []), path.parent, report)
+    robots = read_robots(top.get("robots", []), top.get("defaults", {}), report)
+    check_rests(robots, floor, report)
+    if report:
+        raise BadFileError(report.faults())
+    whole = tuple(read.robot for read in robots if read.robot is not None)
+    if len(whole) < len(robots):
+        raise RuntimeError(f"{len(robots) - len(whole)} robots of {path} were left out without a fault")
+    name = top.get("name", path.stem)
+    try:
+        return Problem(name, floor.workspace, whole, floor.obstacles, options, digest((data, *floor.files)))
+    except InvalidValueError as error:
+        raise BadFileError(Fault(str(path), None, "", text) for _, text in error.faults) from None
+
+
+def digest(files: Iterable[bytes]) -> str:
+    """SHA-256, as hexadecimal digits, over the bytes of files, each led by its length as 8 bytes, big end first."""
+    total = hashlib.sha256()
+    for data in files:
+        total.update(len(data).to_bytes(8, "big"))
+        total.update(data)
+    return total.hexdigest()
+
+
+def _parse(file: str, data: bytes) -> tuple[str, dict[str, Any]]:
+    """The text of the file, with plain line ends, and its values."""
+    try:
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise BadFileError([Fault(file, line, "", "the file is no text in UTF-8")]) from None
+    try:
+        return text, tomllib.loads(text)
+    except RecursionError:
+        raise BadFileError([Fault(file, None, "", "the file is nested too deeply")]) from None
+    except ValueError as error:  # TOMLDecodeError, and Python's own for integers of thousands of digits
+        place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)", str(error))
+        what, line = str(error), None
+        if place is not None:
+            what = what[: place.start()]
+            line = int(place[1]) if place[1] else text.count("\n") + (not text.endswith("\n"))
+        raise BadFileError([Fault(file, line, "", f"this is no TOML: {what}")]) from None

@@ -1,0 +1,108 @@
+"""The door of ruckig: time-optimal jerk-limited motions between two states (Berscheid & Kroeger 2021)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, TypeAlias
+
+import ruckig
+
+from coord.errors import SolverError
+from coord.model.profile import VelocityProfile
+from coord.model.robot import Limits
+
+#: arc length [m], speed [m/s], acceleration [m/s2]
+State: TypeAlias = tuple[float, float, float]
+
+#: [s] Phases shorter than this are dropped: they carry no motion, and knots must stay distinct.
+SHORTEST_PHASE = 1e-10
+
+#: How far (m, m/s, m/s2) the end of the integrated phases may lie from the state asked for.
+END_SLACK = 1e-9
+
+
+def motion(start: State, goal: State, limits: Limits, duration: float | None = None) -> VelocityProfile | None:
+    """The quickest motion from one state to another, or the one that takes exactly ``duration`` [s].
+
+    The motion begins at t = 0, never moves backwards and keeps speed, acceleration, deceleration and jerk.
+    None when ruckig finds no such motion: the way is too short for the change of speed, or the duration
+    cannot be met exactly.
+    """
+    request = _request(start, goal, limits, duration)
+    for scale in (1.0, 1.0 - 1e-9):  # ruckig fails on some round numbers: a hair less of everything helps
+        _set_limits(request, limits, scale)
+        trajectory = ruckig.Trajectory(1)
+        try:
+            if not request.validate(True, True):
+                return None
+            outcome = ruckig.Ruckig(1).calculate(request, trajectory)
+        except ruckig.RuckigError:
+            continue
+        if outcome != ruckig.Result.Working:
+            continue
+        if duration is not None and abs(trajectory.duration - duration) > 1e-9 * max(1.0, duration):
+            return None  # a longer motion was given instead
+        profile = _profile(start, goal, trajectory)
+        if profile is not None:
+            return profile
+    return None
+
+
+def rest_to_rest(length: float, limits: Limits) -> VelocityProfile:
+    """The quickest motion over ``length`` [m] > 0 from rest to rest.
+
+    Raises
+    ------
+    SolverError
+        When ruckig fails, which no known input makes it do.
+    """
+    profile = motion((0.0, 0.0, 0.0), (length, 0.0, 0.0), limits)
+    if profile is None:
+        raise SolverError(f"no rest-to-rest motion found over {length!r} m within {limits}")
+    return profile
+
+
+def _request(start: State, goal: State, limits: Limits, duration: float | None) -> Any:
+    request = ruckig.InputParameter(1)
+    # from position 0: ruckig loses digits at other places, and then fails
+    request.current_position = [0.0]
+    request.current_velocity = [start[1]]
+    request.current_acceleration = [start[2]]
+    request.target_position = [goal[0] - start[0]]
+    request.target_velocity = [goal[1]]
+    request.target_acceleration = [goal[2]]
+    if duration is not None:
+        request.minimum_duration = duration
+    return request
+
+
+def _set_limits(request: Any, limits: Limits, scale: float) -> None:
+    request.max_velocity = [limits.speed * scale]
+    request.min_velocity = [0.0]  # exactly 0: None lets it reverse, -1e-6 lets it creep backwards for ever
+    request.max_acceleration = [limits.acceleration * scale]
+    request.min_acceleration = [-limits.deceleration * scale]
+    request.max_jerk = [limits.jerk * scale]
+
+
+def _phases(trajectory: Any) -> Iterator[tuple[float, float]]:
+    profile = trajectory.profiles[0][0]
+    yield from zip(profile.brake.t, profile.brake.j, strict=True)
+    yield from zip(profile.t, profile.j, strict=True)
+
+
+def _profile(start: State, goal: State, trajectory: Any) -> VelocityProfile | None:
+    times, states, jerks = [0.0], [start], []
+    for duration, jerk in _phases(trajectory):
+        if duration < SHORTEST_PHASE:
+            continue
+        h, j = float(duration), float(jerk)
+        s, v, a = states[-1]
+        states.append((s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j))
+        times.append(times[-1] + h)
+        jerks.append(j)
+    if any(abs(got - asked) > END_SLACK for got, asked in zip(states[-1], goal, strict=True)):
+        return None
+    if min(v for _, v, _ in states) < -END_SLACK:
+        return None
+    states[-1] = goal
+    return VelocityProfile(times, states, jerks)  # type: ignore[arg-type]

@@ -1,0 +1,139 @@
+"""The door of casadi's conic solvers: jerk-limited motion inside bounds, on a fixed time grid, as a linear program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import casadi
+import numpy as np
+import numpy.typing as npt
+
+from coord.model.arrays import Array
+from coord.model.robot import Limits
+
+#: Programs are rounded up to these numbers of cells, so that few solvers are built.
+SIZES = (8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 256, 320, 384, 512)
+
+#: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
+_DIAGONAL = 1e-7
+
+#: [m] Stands for "no bound": rows without any finite bound make PIQP print.
+_FAR = 1e7
+
+#: [m/s] Between departure and arrival the program's robot creeps at least this fast, so that rounding
+#: cannot make it move backwards.
+CREEP = 1e-7
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """N time cells with constant jerk each.
+
+    Parameters
+    ----------
+    h : (N,) durations [s]; N is one of SIZES.
+    upper, lower : (N, 4) bounds [m] on the Bezier points of s in each cell.
+    caps : (N,) largest speed [m/s] in each cell.
+    """
+
+    h: Array
+    upper: Array
+    lower: Array
+    caps: Array
+
+
+def farthest(cells: Cells, limits: Limits) -> float | None:
+    """How far [m] the robot can come to rest at the end of the cells, from rest at 0; None where no motion is found."""
+    solution = _solve(cells, limits, None)
+    return None if solution is None else float(solution[-3])
+
+
+def smoothest(cells: Cells, limits: Limits, length: float) -> Array | None:
+    """Jerks (N,) of the motion from rest at 0 to rest at ``length`` with the least squared jerk; None if none is found."""
+    solution = _solve(cells, limits, length)
+    return None if solution is None else solution[:-3].reshape(-1, 4)[:, 3].copy()
+
+
+def _solve(cells: Cells, limits: Limits, length: float | None) -> Array | None:
+    """Unknowns s, v, a, j for each cell, then the last s, v, a."""
+    n = len(cells.h)
+    low, high = _variable_bounds(cells, limits, length)
+    row_low, row_high = _row_bounds(cells)
+    if np.any(low > high) or np.any(row_low > row_high):
+        return None
+    solver, a_pattern, h_pattern, order = _program(n)
+    weight = np.full(4 * n + 3, _DIAGONAL)
+    gradient = np.zeros(4 * n + 3)
+    if length is None:
+        gradient[-3] = -1.0
+    else:
+        weight[3:-3:4] += cells.h
+    solution = solver(
+        h=casadi.DM(h_pattern, weight),
+        g=gradient,
+        a=casadi.DM(a_pattern, _coefficients(cells.h)[order]),
+        lba=row_low,
+        uba=row_high,
+        lbx=low,
+        ubx=high,
+    )
+    return np.asarray(solution["x"]).ravel() if solver.stats()["success"] else None
+
+
+def _variable_bounds(cells: Cells, limits: Limits, length: float | None) -> tuple[Array, Array]:
+    n = len(cells.h)
+    low, high = np.empty((n + 1, 4)), np.empty((n + 1, 4))
+    low[:, 0], high[:, 0] = -_FAR, _FAR
+    np.maximum(low[:-1, 0], cells.lower[:, 0], out=low[:-1, 0])
+    np.maximum(low[1:, 0], cells.lower[:, 3], out=low[1:, 0])
+    np.minimum(high[:-1, 0], cells.upper[:, 0], out=high[:-1, 0])
+    np.minimum(high[1:, 0], cells.upper[:, 3], out=high[1:, 0])
+    low[:, 1], high[:, 1] = CREEP, limits.speed
+    np.minimum(high[:-1, 1], cells.caps, out=high[:-1, 1])
+    np.minimum(high[1:, 1], cells.caps, out=high[1:, 1])
+    low[:, 2], high[:, 2] = -limits.deceleration, limits.acceleration
+    low[:, 3], high[:, 3] = -limits.jerk, limits.jerk
+    low[0, :3] = high[0, :3] = 0.0
+    low[n, 1:3] = high[n, 1:3] = 0.0
+    if length is not None:
+        low[n, 0] = high[n, 0] = length
+    return low.ravel()[:-1], high.ravel()[:-1]
+
+
+def _row_bounds(cells: Cells) -> tuple[Array, Array]:
+    """Three equations of motion a cell, then the two inner Bezier points of s and the middle one of v."""
+    n = len(cells.h)
+    low, high = np.zeros((n, 6)), np.zeros((n, 6))
+    low[:, 3:5], high[:, 3:5] = np.maximum(cells.lower[:, 1:3], -_FAR), np.minimum(cells.upper[:, 1:3], _FAR)
+    low[:, 5], high[:, 5] = CREEP, cells.caps
+    low[[0, -1], 5] = -CREEP  # at rest at both ends
+    return low.ravel(), high.ravel()
+
+
+def _coefficients(h: Array) -> Array:
+    """Values of the rows' coefficients, cell by cell, in the order of ``_places``."""
+    one = np.ones_like(h)
+    dynamics = [one, -one, -h, -(h**2) / 2, -(h**3) / 6, one, -one, -h, -(h**2) / 2, one, -one, -h]
+    bezier = [one, h / 3, one, 2 * h / 3, h**2 / 6, one, h / 2]
+    return np.stack(dynamics + bezier, axis=1).ravel()
+
+
+def _places(n: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Rows and columns of the coefficients; columns 0..3 are s, v, a, j of the cell, 4..6 the next s, v, a."""
+    row = np.array([0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5, 5])
+    column = np.array([4, 0, 1, 2, 3, 5, 1, 2, 3, 6, 2, 3, 0, 1, 0, 1, 2, 1, 2])
+    k = np.arange(n)[:, None]
+    return (6 * k + row).ravel(), (4 * k + column).ravel()
+
+
+@lru_cache(maxsize=64)
+def _program(n: int) -> tuple[Any, Any, Any, npt.NDArray[np.intp]]:
+    rows, columns = _places(n)
+    order = np.lexsort((rows, columns))  # casadi keeps columns one after the other
+    starts = np.searchsorted(columns[order], np.arange(4 * n + 4))
+    a = casadi.Sparsity(6 * n, 4 * n + 3, starts.tolist(), rows[order].tolist())
+    h = casadi.Sparsity.diag(4 * n + 3)
+    options = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 60, "verbose": False}}
+    return casadi.conic("motion", "piqp", {"h": h, "a": a}, options), a, h, order

@@ -1,0 +1,94 @@
+"""Is a profile clear of a window? Exact: the extremes of cubics between all knots and strip borders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coord.conflicts.window import Window
+from coord.model.arrays import Array
+from coord.model.profile import VelocityProfile
+
+#: [m] Bounds may be missed by this much: a thousandth of the margin that the regions carry.
+SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """How far [m] a profile reaches above a window's lower and below its upper bound, at worst, and when [s].
+
+    ``over_low`` <= 0: it passes after the other; ``under_high`` <= 0: before. Both above 0: a collision course,
+    the first time of which is ``time``.
+    """
+
+    over_low: float
+    over_time: float
+    under_high: float
+    under_time: float
+    time: float
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the profile passes on one side of the window."""
+        return self.over_low <= SLACK or self.under_high <= SLACK
+
+    @property
+    def passes_after(self) -> bool:
+        """Whether it passes after the other robot."""
+        return self.over_low <= SLACK
+
+
+def excess(profile: VelocityProfile, window: Window) -> Excess:
+    """How far a profile is from passing after, and from passing before the robot of a window."""
+    first, last = float(window.times[0]), float(window.times[-1])
+    if np.isinf(last):
+        last = max(profile.arrival, float(window.times[-2])) + 1.0
+    edges = np.concatenate([window.times[:-1], [last]])
+    inside = profile.times[(profile.times > first) & (profile.times < last)]
+    times = np.unique(np.concatenate([edges, inside]))
+    start, h = times[:-1], np.diff(times)
+    strip = np.searchsorted(edges, start + h / 2, side="right") - 1
+    state = profile.state(start)
+    moving = (start >= profile.departure) & (start < profile.arrival)
+    if len(profile.jerks):
+        phase = np.clip(np.searchsorted(profile.times, start + h / 2, side="right") - 1, 0, len(profile.jerks) - 1)
+        jerk = np.where(moving, profile.jerks[phase], 0.0)
+    else:
+        jerk = np.zeros_like(start)
+    state[~moving, 1:] = 0.0
+    over, over_at = _highest(state, jerk, h, *_line(window.low, edges, strip, start))
+    negated = np.stack([-state[:, 0], -state[:, 1], -state[:, 2]], axis=1)
+    value, slope = _line(window.high, edges, strip, start)
+    under, under_at = _highest(negated, -jerk, h, -value, -slope)
+    both = np.flatnonzero((over > SLACK) & (under > SLACK))
+    k, m = int(np.argmax(over)), int(np.argmax(under))
+    return Excess(
+        float(over[k]),
+        float(start[k] + over_at[k]),
+        float(under[m]),
+        float(start[m] + under_at[m]),
+        float(start[both[0]]) if len(both) else np.inf,
+    )
+
+
+def _line(bound: Array, edges: Array, strip: Array, start: Array) -> tuple[Array, Array]:
+    """Values of the strips' lines at the start of each part, and their slopes."""
+    slope = (bound[strip, 1] - bound[strip, 0]) / (edges[strip + 1] - edges[strip])
+    return bound[strip, 0] + slope * (start - edges[strip]), slope
+
+
+def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) -> tuple[Array, Array]:
+    """Largest s(u) - line(u) on [0, h] for cubics s, and where: at the ends or where the derivative vanishes."""
+    c0, c1, c2, c3 = state[:, 0] - value, state[:, 1] - slope, state[:, 2] / 2, jerk / 6
+    root = np.sqrt(np.maximum(c2 * c2 - 3 * c1 * c3, 0.0))
+    # both roots of c1 + 2 c2 u + 3 c3 u^2, written so that neither loses its digits
+    q = -(c2 + np.where(c2 >= 0, root, -root))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u1, u2 = q / (3 * c3), c1 / q
+    candidates = np.stack([np.zeros_like(h), h, u1, u2])
+    candidates = np.where(np.isfinite(candidates), np.clip(candidates, 0.0, h), 0.0)
+    values = c0 + candidates * (c1 + candidates * (c2 + candidates * c3))
+    best = np.argmax(values, axis=0)
+    column = np.arange(len(h))
+    return values[best, column], candidates[best, column]

@@ -1,0 +1,81 @@
+"""A meeting: one region of ego with one robot planned before it; its window is built only when it matters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from coord.alone.inverse import time_at
+from coord.conflicts.region import ConflictRegion
+from coord.conflicts.window import Window, stay_within, window
+from coord.model.profile import VelocityProfile
+from coord.timing.clear import Excess, excess
+
+
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """Which resting places are in the way, by exact tests: ego's own for the other, the other's for ego."""
+
+    start_free: bool
+    goal_free: bool
+    other_waits: bool
+    other_parks: bool
+
+
+@dataclass(slots=True, eq=False)
+class Meeting:
+    """A conflict region with the motion of the other robot through it.
+
+    ``box`` : earliest and latest time [s] at which the other is in the region, least and largest forbidden
+    arc length [m] of ego.
+    """
+
+    region: ConflictRegion
+    other: int
+    profile: VelocityProfile
+    ends: Ends
+    length: float
+    box: tuple[float, float, float, float] = field(init=False)
+    _window: Window | None = field(init=False, default=None)
+
+    def __post_init__(self) -> None:
+        first, last = time_at(self.profile, self.region.sigma[[0, -1]]).tolist()
+        if self.region.sigma[0] <= 0 and self.ends.other_waits:
+            first = 0.0
+        if self.region.sigma[-1] >= self.profile.length:
+            last = np.inf if self.ends.other_parks else self.profile.arrival
+        self.box = (first, last, *self.region.s_range)
+
+    @property
+    def window(self) -> Window:
+        """The forbidden arc lengths over time."""
+        if self._window is None:
+            ends = self.ends
+            raw = window(self.region, self.other, self.profile, waits=ends.other_waits, parks=ends.other_parks)
+            if raw is None:  # the other never gets there: a window of no width
+                raw = Window(self.other, np.array([0.0, 1.0]), np.array([[np.inf] * 2]), np.array([[-np.inf] * 2]))
+            self._window = stay_within(raw, ends.start_free, ends.goal_free, self.length)
+        return self._window
+
+    def is_avoided(self, profile: VelocityProfile) -> bool:
+        """Whether a look at the box alone shows that a profile does not meet the other here."""
+        first, last, low, high = self.box
+        s = profile.state([first, min(last, max(profile.arrival, first))])[:, 0]
+        return bool(s[1] <= low or s[0] >= high)
+
+    def excess(self, profile: VelocityProfile) -> Excess | None:
+        """How far the profile is from passing on one side; None where the box shows that it does."""
+        return None if self.is_avoided(profile) else excess(profile, self.window)
+
+
+def first_violated(meetings: list[Meeting], profile: VelocityProfile) -> tuple[int, Excess] | None:
+    """The meeting, by index, at which a profile first runs into another robot; None where it is clear of all."""
+    found: tuple[int, Excess] | None = None
+    for index, meeting in enumerate(meetings):
+        if found is not None and meeting.box[0] > found[1].time:
+            continue
+        gap = meeting.excess(profile)
+        if gap is not None and not gap.is_clear and (found is None or gap.time < found[1].time):
+            found = (index, gap)
+    return found

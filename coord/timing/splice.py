@@ -1,0 +1,126 @@
+"""Giving way on the move: the quickest profile, delayed in steps.
+
+Up to some place the robot follows its quickest profile with one delay, so that it passes before some robots;
+then it slows down, lets others pass and speeds up again, and from then on follows the same profile with a
+larger delay. Each step is one arc of ruckig with exactly the duration in between.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from coord.alone.inverse import time_at
+from coord.model.profile import VelocityProfile
+from coord.solvers.jerk import motion
+from coord.timing.delay import Contact
+from coord.timing.ego import Ego
+
+#: Shares of the time between two contacts at which an arc may begin, counted back from its end.
+_BEGINNINGS = (1.0, 0.6, 0.35)
+
+#: [s] How long after the contact the arc may end: the profile must be joined with its speed and acceleration.
+_ENDINGS = (0.0, 0.25, 0.6, 1.2, 2.5)
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """From ``since`` on (the contact's time, at arc length s) the delay must be at least (after) or at most ``delay``."""
+
+    contact: Contact
+    is_after: bool
+
+
+def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[VelocityProfile]:
+    """Profiles with stepwise delays for these contacts, the most promising first; the caller checks them.
+
+    Parameters
+    ----------
+    afters, befores : for each window passed after (before), the least (largest) delay and where it binds.
+    """
+    levels = _levels(afters, befores)
+    if levels is None:
+        return []
+    found = []
+    for ending in _ENDINGS:
+        for share in _BEGINNINGS:
+            profile = _chain(ego, levels, ending, share)
+            if profile is not None:
+                found.append(profile)
+    return found
+
+
+def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, float, float]] | None:
+    """Rising delays as (delay, arc length from which it must hold, arc length up to which the previous one must).
+
+    Contacts are taken in the order of their places; None where a place must be passed before somebody with
+    less delay than a place behind it already needs.
+    """
+    steps = sorted(
+        [_Step(contact, True) for contact in afters] + [_Step(contact, False) for contact in befores],
+        key=lambda step: (step.contact.s, step.is_after),
+    )
+    levels = [(0.0, 0.0, 0.0)]
+    bound_at = 0.0
+    for step in steps:
+        delay, s = step.contact.delay, step.contact.s
+        if step.is_after and delay > levels[-1][0]:
+            levels.append((delay, s, bound_at))
+        elif not step.is_after:
+            if delay < levels[-1][0]:
+                return None
+            bound_at = s
+    return levels
+
+
+def _chain(ego: Ego, levels: list[tuple[float, float, float]], ending: float, share: float) -> VelocityProfile | None:
+    """The alone profile through all levels, each joined by one arc; None where an arc does not exist."""
+    current = ego.alone
+    for delay, s, kept_to in levels[1:]:
+        target = ego.alone.shifted(delay)
+        end = float(time_at(target, s)[0]) + ending
+        earliest = max(float(time_at(current, kept_to)[0]), current.departure)
+        begin = end - (end - earliest) * share
+        joined = _arc(ego, current, target, begin, min(end, target.arrival))
+        if joined is None:
+            return None
+        current = joined
+    return current
+
+
+def _arc(
+    ego: Ego, current: VelocityProfile, target: VelocityProfile, begin: float, end: float
+) -> VelocityProfile | None:
+    """Follow one profile up to ``begin`` and the other from ``end`` on, with a ruckig arc in between."""
+    if end <= begin:
+        return None
+    start, goal = current.state(begin)[0], target.state(end)[0]
+    if goal[0] < start[0]:
+        return None
+    limits = ego.robot.limits
+    cap = float(ego.caps.lowest(start[:1], goal[:1])[0])
+    arc = motion(
+        (float(start[0]), float(start[1]), float(start[2])),
+        (float(goal[0]), float(goal[1]), float(goal[2])),
+        dataclasses.replace(limits, speed=cap),
+        end - begin,
+    )
+    return None if arc is None else _join(current, arc.shifted(begin), target)
+
+
+def _join(head: VelocityProfile, arc: VelocityProfile, tail: VelocityProfile) -> VelocityProfile:
+    """The head up to the arc's beginning, the arc, then the tail from the arc's end on."""
+    first, last = arc.departure, arc.arrival
+    before = head.times < first - 1e-9
+    behind = tail.times > last + 1e-9
+    if not len(arc.jerks):
+        return head
+    head_jerks = head.jerks[: max(int(before.sum()), 0)] if first > head.departure else head.jerks[:0]
+    tail_start = len(tail.times) - int(behind.sum())
+    tail_jerks = tail.jerks[max(tail_start - 1, 0) :] if behind.any() else tail.jerks[:0]
+    keep_head = before if first > head.departure else np.zeros_like(before)
+    times = np.concatenate([head.times[keep_head], arc.times, tail.times[behind]])
+    states = np.concatenate([head.states[keep_head], arc.states, tail.states[behind]])
+    return VelocityProfile(times, states, np.concatenate([head_jerks[: int(keep_head.sum())], arc.jerks, tail_jerks]))

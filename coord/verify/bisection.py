@@ -1,0 +1,67 @@
+"""Proof by halving: a function is nowhere below a value, or a place is shown where it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from coord.verify.tolerances import HALVINGS, HALVINGS_REFUSED, RESOLUTION
+
+#: (a, b) -> a lower bound of the function on [a, b], a value that it takes there, and where.
+Bound = Callable[[float, float], tuple[float, float, float]]
+
+
+class Least(NamedTuple):
+    """What is known of the least value of a function.
+
+    ``value`` and ``at`` : the least value seen below the one given, and where; ``at`` is None where none was.
+    ``open`` : a place at which neither proof nor counterexample was found, None where all is decided.
+    """
+
+    value: float
+    at: float | None
+    open: float | None = None
+
+
+def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Least:
+    """Show that a function is >= need on [lo, hi], and look for values below best.
+
+    Without a value below need, and with ``open`` None, the function is proved >= need on all of [lo, hi].
+    Its least value is not below the ``value`` returned by more than the resolution, unless that is below need
+    and the search for the worst place was cut short.
+    """
+    best = max(best, need)  # what others do must not excuse this one from its own proof
+    at: float | None = None
+    cut = max(need, best - RESOLUTION)
+    stack = [(lo, hi)]
+    halvings = 0
+    while stack:
+        a, b = stack.pop()
+        lower, value, where = bound(a, b)
+        if value < best:
+            best, at = value, where
+            cut = best - RESOLUTION if best < need else max(need, best - RESOLUTION)
+        if lower >= cut:
+            continue
+        middle = (a + b) / 2
+        halvings += 1
+        if best < need and halvings > HALVINGS_REFUSED:
+            break
+        if not a < middle < b or halvings > HALVINGS:
+            if best >= need and not lower >= need:
+                return Least(best, at, a)
+            continue
+        stack.append((middle, b))
+        stack.append((a, middle))
+    return Least(best, at)
+
+
+def merged(first: Least, second: Least) -> Least:
+    """Both findings as one."""
+    value, at = min((first.value, first.at), (second.value, second.at), key=_value)
+    return Least(value, at, first.open if first.open is not None else second.open)
+
+
+def _value(pair: tuple[float, float | None]) -> float:
+    return math.inf if pair[1] is None else pair[0]
