@@ -21,8 +21,8 @@ import typer
 from coord.errors import BadFileError, Fault, InvalidValueError, NoPlanError, NotCertifiedError
 
 if TYPE_CHECKING:
+    from coord.model.options import Options
     from coord.model.problem import Problem
-    from coord.plan import Options
 
 OK: Final = 0
 NO_PLAN: Final = 1
@@ -254,7 +254,7 @@ def export(
 
 def _options(file: Path, problem: Problem, **flags: object) -> Options:
     """The options of the file, overruled by the flags that were given; faults say which of the two is wrong."""
-    from coord.plan import Options
+    from coord.model.options import Options
 
     given = {name: value for name, value in flags.items() if value is not None}
     unknown = problem.options.keys() - flags.keys()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 
@@ -109,10 +110,8 @@ def _phases(chain: list[VelocityProfile]) -> Array:
 
     rows: list[list[float]] = []
     for part in chain:
-        phases = [
-            [*state, h, j]
-            for state, h, j in zip(part.states.tolist(), np.diff(part.times).tolist(), part.jerks.tolist(), strict=False)
-        ]
+        columns = np.column_stack([part.states[:-1], np.diff(part.times), part.jerks])
+        phases: list[list[float]] = columns.tolist()
         while len(phases) < PHASES:
             k = max(range(len(phases)), key=lambda i: phases[i][3])
             s, v, a, h, j = phases[k]
@@ -149,14 +148,13 @@ def _without_jerk(path: Path, limits: Limits) -> float:
         w[m + 1] = min(w[m + 1], w[m] + 2 * up * float(length[m]))
     for m in reversed(range(len(length))):
         w[m] = min(w[m], w[m + 1] + 2 * down * float(length[m]))
-    return sum(
-        _trapezoid(float(length[m]), w[m] ** 0.5, w[m + 1] ** 0.5, float(cap[m]), up, down) for m in range(len(length))
-    )
+    v = [math.sqrt(square) for square in w]
+    return math.fsum(_trapezoid(float(length[m]), v[m], v[m + 1], float(cap[m]), up, down) for m in range(len(length)))
 
 
 def _trapezoid(length: float, v0: float, v1: float, cap: float, up: float, down: float) -> float:
     """Least time over a length between two speeds under a cap, without a jerk limit."""
-    peak = min(cap, ((2 * up * down * length + down * v0**2 + up * v1**2) / (up + down)) ** 0.5)
+    peak = min(cap, math.sqrt((2 * up * down * length + down * v0 * v0 + up * v1 * v1) / (up + down)))
     peak = max(peak, v0, v1)
     ramps = (peak**2 - v0**2) / (2 * up) + (peak**2 - v1**2) / (2 * down)
     return (peak - v0) / up + (peak - v1) / down + max(length - ramps, 0.0) / peak

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -82,5 +83,5 @@ def _cuts(length: float, k0: float, k1: float, limits: Limits) -> list[tuple[flo
     edges = [k / count for k in range(count + 1)]
     return [
         (length * after, cap(max(abs(k0 + (k1 - k0) * before), abs(k0 + (k1 - k0) * after)), limits))
-        for before, after in zip(edges[:-1], edges[1:], strict=True)
+        for before, after in itertools.pairwise(edges)
     ]

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from coord.model.arrays import Array, frozen
 from coord.model.path import Path
 from coord.tolerances import CHORD_SAGITTA

@@ -125,7 +125,7 @@ def _box_pairs(ego: Chords, other: Chords, distance: float) -> tuple[npt.NDArray
 
 
 def _stadium_extent(E: Array, w: Array, u: Array, length: Array, R: Array) -> tuple[Array, Array]:
-    """Where the line E + w x is closer than R to the segment from 0 to u length: x from first to last (first > last: never).
+    """Where the line E + w x is nearer than R to the segment from 0 to u length: first, last x (first > last: never).
 
     The stadium is convex, so the extent is the hull of the extents in its two discs and its rectangle.
     """
@@ -154,7 +154,9 @@ def _disc_extent(E: Array, w: Array, R: Array) -> tuple[Array, Array, npt.NDArra
     return low, high, np.where(moving, b * b > a * c, c < 0)
 
 
-def _rectangle_extent(E: Array, w: Array, u: Array, length: Array, R: Array) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
+def _rectangle_extent(
+    E: Array, w: Array, u: Array, length: Array, R: Array
+) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Where E + w x lies beside the segment, closer than R to it, between its two ends."""
     norm = np.sqrt((u * u).sum(axis=1))
     unit = np.divide(u, norm[:, None], out=np.zeros_like(u), where=norm[:, None] > 0)
@@ -223,8 +225,7 @@ def _nodes(extent: Array, first: float, last: float) -> Array:
     ends = [x + sign * share * cell for x, sign in ((first, 1), (last, -1)) for share in _END_NODES]
     count = max(1, int(np.ceil((last - first) / cell)))
     nodes = np.unique(np.concatenate([np.linspace(first, last, count + 1), ends, extent.ravel()]))
-    keep = np.concatenate([[True], np.diff(nodes) > SAME_PLACE])
-    nodes = nodes[keep]
+    nodes = np.asarray(nodes[np.concatenate([[True], np.diff(nodes) > SAME_PLACE])])
     nodes[-1] = last
     return nodes
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.model.arrays import Array, Point
 from coord.model.path import Path
@@ -42,7 +43,7 @@ def runs_over(path: Path, place: Point, distance: float) -> float | None:
     return s if least < distance - DISTANCE else None
 
 
-def _lines(path: Path, index: Array, target: Array) -> list[tuple[float, float]]:
+def _lines(path: Path, index: npt.NDArray[np.intp], target: Array) -> list[tuple[float, float]]:
     """Distances and arc lengths within the pieces of the points closest to the target, for straight pieces."""
     poses, length = path.poses[index], path.pieces[index, 0]
     direction = np.stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])], axis=1)

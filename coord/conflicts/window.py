@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.alone.inverse import time_at
 from coord.conflicts.region import ConflictRegion
@@ -97,7 +98,7 @@ def _cut(times: Array, profile: VelocityProfile) -> Array:
 
 
 def _lines_over_time(
-    region: ConflictRegion, profile: VelocityProfile, cuts: Array, cell: Array, sigma: Array
+    region: ConflictRegion, profile: VelocityProfile, cuts: Array, cell: npt.NDArray[np.intp], sigma: Array
 ) -> tuple[Array, Array]:
     """Lines over time on the safe side of the lines over sigma.
 
@@ -123,7 +124,7 @@ def stay_within(bounds: Window, start_free: bool, goal_free: bool, length: float
     """
     low, high = bounds.low, bounds.high
     if start_free:
-        low = np.where((low < 0).any(axis=1)[:, None], 0.0, low)
+        low = np.where(low.min(axis=1, keepdims=True) < 0, 0.0, low)
     if goal_free:
-        high = np.where((high > length).any(axis=1)[:, None], length, high)
+        high = np.where(high.max(axis=1, keepdims=True) > length, length, high)
     return Window(bounds.other, bounds.times, low, high)

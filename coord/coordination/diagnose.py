@@ -17,7 +17,7 @@ def cycle(arcs: Sequence[BlockingArc]) -> Diagnosis:
         f"{who} block each other on their paths, so that none can go first: {reasons}. "
         "With these paths no order lets all of them arrive one after the other."
     )
-    remedy = f'Move the start or goal of one of them off the others\' paths, for example that at {_at(arcs[0].place)}.'
+    remedy = f"Move the start or goal of one of them off the others' paths, for example that at {_at(arcs[0].place)}."
     return Diagnosis("blocking-cycle", names, text, arcs[0].place, None, remedy)
 
 
@@ -40,5 +40,5 @@ def _reason(arc: BlockingArc) -> str:
     return f'"{arc.then}" would park at {_at(arc.place)} in the way of "{arc.first}", which would have to pass first'
 
 
-def _at(place: Point) -> str:
-    return f"({place[0]:.2f}, {place[1]:.2f})"
+def _at(place: Point | None) -> str:
+    return "an unknown place" if place is None else f"({place[0]:.2f}, {place[1]:.2f})"

@@ -10,12 +10,12 @@ from coord.model.result import BlockingArc
 
 def urgency(priorities: Sequence[float | None], solo_arrivals: Sequence[float]) -> list[int]:
     """Robots, most urgent first: by priority, then those without one, the longest alone first, then as given."""
-    return sorted(
-        range(len(priorities)),
-        key=lambda i: (
-            (0, priorities[i], 0.0, i) if priorities[i] is not None else (1, 0.0, -solo_arrivals[i], i)  # type: ignore[arg-type, return-value]
-        ),
-    )
+
+    def key(i: int) -> tuple[int, float, int]:
+        priority = priorities[i]
+        return (1, -solo_arrivals[i], i) if priority is None else (0, priority, i)
+
+    return sorted(range(len(priorities)), key=key)
 
 
 def topological_order(urgent: Sequence[int], names: Sequence[str], arcs: Sequence[BlockingArc]) -> list[int] | None:

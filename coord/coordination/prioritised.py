@@ -50,10 +50,11 @@ class Scene:
 def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozenset[tuple[int, int, str]]:
     """Arcs as (resting robot, driving robot, where it rests)."""
     index = {name: i for i, name in enumerate(names)}
-    return frozenset(
-        (index[arc.first], index[arc.then], "start") if arc.at == "start" else (index[arc.then], index[arc.first], "goal")
-        for arc in arcs
-    )
+    places = set()
+    for arc in arcs:
+        resting, driving = (arc.first, arc.then) if arc.at == "start" else (arc.then, arc.first)
+        places.add((index[resting], index[driving], arc.at))
+    return frozenset(places)
 
 
 def plan_in_order(scene: Scene, order: Sequence[int], done: Callable[[int], None]) -> dict[int, Timing]:

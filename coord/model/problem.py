@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -56,11 +57,11 @@ class Problem:
     digest: str = ""
 
     def __post_init__(self) -> None:
-        names = [robot.name for robot in self.robots]
+        uses = Counter(robot.name for robot in self.robots)
         faults = [
-            ("name", f'the name "{name}" is used {names.count(name)} times; names must differ')
-            for name in dict.fromkeys(names)
-            if names.count(name) > 1
+            ("name", f'the name "{name}" is used {count} times; names must differ')
+            for name, count in uses.items()
+            if count > 1
         ]
         if not self.robots:
             faults.append(("robots", "a problem needs at least one robot"))

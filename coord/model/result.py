@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from coord.model.arrays import Point
@@ -84,7 +85,7 @@ class Plan:
     @property
     def sum_of_arrivals(self) -> float:
         """Sum of all arrivals [s]."""
-        return sum(robot.arrival for robot in self.robots)
+        return math.fsum(robot.arrival for robot in self.robots)
 
     @property
     def makespan(self) -> float:
@@ -94,7 +95,7 @@ class Plan:
     @property
     def sum_of_solo_arrivals(self) -> float:
         """Sum of the arrivals every robot would have alone [s]."""
-        return sum(robot.solo_arrival for robot in self.robots)
+        return math.fsum(robot.solo_arrival for robot in self.robots)
 
     @property
     def optimality_gap(self) -> float:

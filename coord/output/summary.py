@@ -70,7 +70,7 @@ def table(result: Result, plan: Plan, seconds: float) -> RenderableType:
         ("makespan", f"{plan.makespan:.2f} s", "the last arrival"),
         ("sum alone", f"{plan.sum_of_solo_arrivals:.2f} s", "if every robot had the floor to itself"),
         ("delay a robot", f"{delay:.2f} s", "mean, for the others' sake"),
-        ("lower bound", f"{plan.lower_bound:.2f} s", f"on the sum of arrivals on these paths ({plan.lower_bound_by})"),
+        ("lower bound", f"{plan.lower_bound:.2f} s", f"on that sum, on these paths ({plan.lower_bound_by})"),
         ("gap", f"{100 * plan.optimality_gap:.2f} %", "at most this far from the best sum"),
         ("least clearance", *_clearance_cells(result.min_clearance, problem.workspace.clearance)),
         ("seconds", f"{seconds:.2f} s", "wall time"),

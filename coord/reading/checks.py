@@ -12,7 +12,7 @@ from coord.geometry.shapes import too_near
 from coord.model.arrays import Array, frozen
 from coord.model.obstacle import Obstacle
 from coord.reading.floor import Floor
-from coord.reading.report import Report
+from coord.reading.report import Report, shown
 from coord.reading.robots import ReadRobot
 from coord.tolerances import DISTANCE
 
@@ -86,11 +86,11 @@ def _check_obstacles(rests: Rests, obstacles: Sequence[Obstacle], clearance: flo
     deepest = np.lexsort((what, -missing, who))
     first = np.unique(who[deepest], return_index=True)[1]
     for pair in deepest[first].tolist():
-        n, name, distance = int(who[pair]), obstacles[what[pair]].name, float(distances[pair])
+        n, name, distance = int(who[pair]), shown(obstacles[what[pair]].name), float(distances[pair])
         where = f"{-distance:.3g} m inside" if distance < 0 else f"{distance:.3g} m from"
         needed = _needed(rests.radii[n], clearance)
         how = "deep in" if distance < 0 else "near to"
-        text = f'is {missing[pair]:.3g} m too {how} obstacle "{name}": its centre is {where} it, {needed}'
+        text = f"is {missing[pair]:.3g} m too {how} obstacle {name}: its centre is {where} it, {needed}"
         _add(rests, n, text, report)
 
 
@@ -116,27 +116,23 @@ def first_overlaps(points: Array, radii: Array, clearance: float) -> npt.NDArray
     A sweep: sorted along one axis, each disc is compared with the next, the next but one and so on, all discs at
     once, until none is near enough along that axis. Time grows with the crowd, memory does not.
     """
-    partner = np.full(len(points), -1, dtype=np.intp)
-    if len(points) < 2:
-        return partner
+    count = len(points)
+    first = np.full(count, count, dtype=np.intp)
+    if not count:
+        return first
     axis = int(np.ptp(points, axis=0).argmax())
     order = np.argsort(points[:, axis], kind="stable")
+    along, across, radius = points[order, axis], points[order, 1 - axis], radii[order]
     farthest = 2 * float(radii.max()) + clearance
-    left = np.arange(len(points))
-    first = np.full(len(points), len(points), dtype=np.intp)
-    for step in range(1, len(points)):
-        left = left[left + step < len(points)]
-        a, b = order[left], order[left + step]
-        near = points[b, axis] - points[a, axis] < farthest
-        left, a, b = left[near], a[near], b[near]
-        if not len(left):
+    for step in range(1, count):
+        ahead = along[step:] - along[:-step]
+        if ahead.min() >= farthest:
             break
-        distance = np.hypot(points[a, 0] - points[b, 0], points[a, 1] - points[b, 1])
-        hit = distance < radii[a] + radii[b] + clearance - DISTANCE
-        np.minimum.at(first, np.maximum(a, b)[hit], np.minimum(a, b)[hit])
-    found = first < len(points)
-    partner[found] = first[found]
-    return partner
+        limit = np.maximum(radius[step:] + radius[:-step] + clearance - DISTANCE, 0.0)
+        hit = np.flatnonzero(ahead**2 + (across[step:] - across[:-step]) ** 2 < limit**2)
+        a, b = order[hit], order[hit + step]
+        np.minimum.at(first, np.maximum(a, b), np.minimum(a, b))
+    return np.where(first < count, first, -1)
 
 
 def _needed(radius: float, clearance: float) -> str:

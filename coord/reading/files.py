@@ -32,5 +32,6 @@ def read_bytes(path: Path, largest: int) -> bytes:
         reason = getattr(error, "strerror", None) or str(error)
         raise UnreadableError(f"cannot be read: {reason}") from None
     if len(data) > largest:
-        raise UnreadableError(f"is larger than {largest // 2**20} MiB")
+        size = f"{largest // 2**20} MiB" if largest >= 2**20 else f"{largest // 2**10} KiB"
+        raise UnreadableError(f"is larger than {size}")
     return data

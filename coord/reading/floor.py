@@ -87,6 +87,8 @@ def _obstacle(table: dict[str, Any], k: int, report: Report) -> Obstacle | None:
     path = ("obstacles", k)
     fields = sound_fields(ObstacleForm, table, path, report)
     kinds = [kind for kind in ("rectangle", "circle", "polygon") if kind in table]
+    if not kinds and fields.keys() != table.keys():
+        return None  # a misspelt key, reported already, may have been meant
     if len(kinds) != 1:
         got = " and ".join(kinds) or "none"
         report.add(path, f"an obstacle is one of rectangle, circle, polygon (got {got})")

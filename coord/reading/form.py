@@ -195,7 +195,7 @@ def _unknown(form: type[Form], key: str) -> str:
     """An unknown key: where it belongs, or what may have been meant."""
     places = [place for place, other in _TABLES.items() if key in other.model_fields]
     near = difflib.get_close_matches(key[:100], list(form.model_fields), n=1)
-    if places and not near:
+    if places:
         hint = f"; it belongs {places[0]}"
     else:
         hint = f'; did you mean "{near[0]}"?' if near else f"; known are {', '.join(form.model_fields)}"

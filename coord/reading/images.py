@@ -52,7 +52,7 @@ def read_image(data: bytes) -> Image:
 
 def _checked_size(columns: int, rows: int) -> tuple[int, int]:
     if columns * rows > LARGEST_MAP:
-        raise ImageError(f"has {columns} x {rows} cells; at most {LARGEST_MAP:g} can be read")
+        raise ImageError(f"has {columns} x {rows} cells; at most {LARGEST_MAP // 10**6} million can be read")
     if columns * rows == 0:
         raise ImageError(f"has {columns} x {rows} cells; at least one is needed")
     return columns, rows
@@ -101,10 +101,12 @@ def _read_other(data: bytes) -> Image:
                     return Image(np.asarray(image.convert("L")), 255)
                 kind = "RGBA" if "A" in image.mode or "transparency" in image.info else "RGB"
                 channels = np.asarray(image.convert(kind))
+    except ImageError:
+        raise
     except PIL.UnidentifiedImageError:
         raise ImageError("is no PGM, PNG or BMP image") from None
     except PIL.Image.DecompressionBombError:
-        raise ImageError(f"has too many cells; at most {LARGEST_MAP:g} can be read") from None
-    except (OSError, SyntaxError, EOFError, IndexError, TypeError, struct.error, zlib.error) as error:
+        raise ImageError(f"has too many cells; at most {LARGEST_MAP // 10**6} million can be read") from None
+    except (OSError, SyntaxError, ValueError, EOFError, IndexError, TypeError, struct.error, zlib.error) as error:
         raise ImageError(f"is damaged: {error}") from None
     return Image(channels.sum(axis=2, dtype=np.uint16), 255 * channels.shape[2])

@@ -78,16 +78,22 @@ def _parse(file: str, data: bytes) -> tuple[str, dict[str, Any]]:
     try:
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise BadFileError([Fault(file, line, "", "the file is no text in UTF-8")]) from None
+        line_of_byte = data.count(b"\n", 0, error.start) + 1
+        raise BadFileError([Fault(file, line_of_byte, "", "the file is no text in UTF-8")]) from None
     try:
         return text, tomllib.loads(text)
     except RecursionError:
         raise BadFileError([Fault(file, None, "", "the file is nested too deeply")]) from None
     except ValueError as error:  # TOMLDecodeError, and Python's own for integers of thousands of digits
-        place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)", str(error))
-        what, line = str(error), None
-        if place is not None:
-            what = what[: place.start()]
-            line = int(place[1]) if place[1] else text.count("\n") + (not text.endswith("\n"))
-        raise BadFileError([Fault(file, line, "", f"this is no TOML: {what}")]) from None
+        raise BadFileError([_no_toml(file, text, str(error))]) from None
+
+
+def _no_toml(file: str, text: str, said: str) -> Fault:
+    """What tomllib said, with the line taken out of its sentence."""
+    place = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)", said)
+    line: int | None = None
+    if place is not None:
+        said = said[: place.start()]
+        line = int(place[1]) if place[1] else text.count("\n") + (not text.endswith("\n"))
+    said = {"Cannot overwrite a value": "this key is given twice"}.get(said, said)
+    return Fault(file, line, "", f"this is no TOML: {said}")

@@ -53,7 +53,9 @@ class Report:
     def faults(self) -> list[Fault]:
         """All faults: those of this file from top to bottom, then those of the files it names."""
         locator = Locator(self._text)
-        found = [Fault(self._file, locator.line(path), self.subject(path), text) for path, text in self._found]
+        found = [
+            Fault(self._file, locator.line(path), self.subject(path), _printable(text)) for path, text in self._found
+        ]
         return sorted(found, key=lambda fault: fault.line or 0) + self._elsewhere
 
     def subject(self, path: KeyPath) -> str:
@@ -72,13 +74,22 @@ def shown(value: object, levels: int = 4) -> str:
     elif isinstance(value, int) and value.bit_length() > 200:
         text = "a huge number"
     elif isinstance(value, str):
-        text = '"' + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in value[: _SHOWN + 1]) + '"'
+        text = f'"{_printable(value[: _SHOWN + 1])}"'
     elif isinstance(value, list):
         items = [shown(item, levels - 1) for item in value[:8]] if levels else ["..."]
         text = "[" + ", ".join(items) + (", ..." if len(value) > 8 else "") + "]"
     elif isinstance(value, dict):
-        entries = [f"{k[:_SHOWN]} = {shown(v, levels - 1)}" for k, v in [*value.items()][:4]] if levels else ["..."]
+        entries = (
+            [f"{_printable(k[:_SHOWN])} = {shown(v, levels - 1)}" for k, v in [*value.items()][:4]]
+            if levels
+            else ["..."]
+        )
         text = "{ " + ", ".join(entries) + (", ..." if len(value) > 4 else "") + " }" if value else "{}"
     else:
         text = str(value)
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def _printable(text: str) -> str:
+    """The text on one line: a name with a line break in it must not break the list of faults."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)

@@ -49,10 +49,14 @@ def read_robots(tables: Sequence[dict[str, Any]], defaults: dict[str, Any], repo
     report.add_rules(path, told)
     common = {key: value for key, value in common.items() if key not in dict(told)}
     _report_same_names(tables, report)
-    return [_read_robot(k, table, {**BUILT_IN, **common}, report) for k, table in enumerate(tables)]
+    # a footprint that is faulty is not replaced: how near to others such a robot may stand is not known
+    known = common.keys() >= defaults.keys() & {"footprint"}
+    return [_read_robot(k, table, {**BUILT_IN, **common}, known, report) for k, table in enumerate(tables)]
 
 
-def _read_robot(k: int, table: dict[str, Any], common: Mapping[str, Any], report: Report) -> ReadRobot:
+def _read_robot(
+    k: int, table: dict[str, Any], common: Mapping[str, Any], common_footprint_is_known: bool, report: Report
+) -> ReadRobot:
     path: KeyPath = ("robots", k)
     own = without_refused("robot", sound_fields(RobotForm, table, path, report), path, report)
     for field in ("name", "start", "goal"):
@@ -63,8 +67,9 @@ def _read_robot(k: int, table: dict[str, Any], common: Mapping[str, Any], report
     report.add_rules(path, told)
     sound = {key: value for key, value in own.items() if key not in dict(told)}
     whole = robot is not None and sound.keys() == table.keys() and all(field in own for field in _ANYBODY)
-    # a footprint that is faulty is not replaced by the common one: how near the robot may stand is then unknown
-    disc = sound["footprint"] if "footprint" in sound else common["footprint"] if "footprint" not in table else None
+    disc = sound.get("footprint")
+    if "footprint" not in table and common_footprint_is_known:
+        disc = common["footprint"]
     return ReadRobot(
         k,
         robot if whole else None,

@@ -22,7 +22,7 @@ from coord.reading.report import shown
 from coord.reading.trace import trace
 from coord.tolerances import LARGEST_COORDINATE
 
-_LARGEST_YAML = 2**20
+_LARGEST_YAML = 2**16
 _LARGEST_IMAGE = 2**28
 
 

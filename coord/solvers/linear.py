@@ -51,7 +51,7 @@ def farthest(cells: Cells, limits: Limits) -> float | None:
 
 
 def smoothest(cells: Cells, limits: Limits, length: float) -> Array | None:
-    """Jerks (N,) of the motion from rest at 0 to rest at ``length`` with the least squared jerk; None if none is found."""
+    """Jerks (N,) of the motion from rest at 0 to rest at ``length`` with the least squared jerk, if one is found."""
     solution = _solve(cells, limits, length)
     return None if solution is None else solution[:-3].reshape(-1, 4)[:, 3].copy()
 
@@ -135,5 +135,5 @@ def _program(n: int) -> tuple[Any, Any, Any, npt.NDArray[np.intp]]:
     starts = np.searchsorted(columns[order], np.arange(4 * n + 4))
     a = casadi.Sparsity(6 * n, 4 * n + 3, starts.tolist(), rows[order].tolist())
     h = casadi.Sparsity.diag(4 * n + 3)
-    options = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 60, "verbose": False}}
+    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 60, "verbose": False}}
     return casadi.conic("motion", "piqp", {"h": h, "a": a}, options), a, h, order

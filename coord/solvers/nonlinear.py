@@ -17,7 +17,7 @@ PHASES = 7
 #: [s] Lower bound of a phase's duration, so that the solver stays away from phases that vanish.
 _SHORTEST = 1e-9
 
-_OPTIONS = {
+_OPTIONS: dict[str, Any] = {
     "print_time": False,
     "expand": True,
     "error_on_fail": False,
@@ -87,7 +87,7 @@ def _program(sections: int) -> tuple[Any, list[float], list[float]]:
         "f": sum(part[0] for part in u),
         "g": casadi.vertcat(*expressions),
     }
-    structure = {
+    structure: dict[str, Any] = {
         "N": count,
         "nx": [3] * (count + 1),
         "nu": [2] * count + [0],

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.conflicts.window import Window
 from coord.model.arrays import Array
@@ -72,7 +73,7 @@ def excess(profile: VelocityProfile, window: Window) -> Excess:
     )
 
 
-def _line(bound: Array, edges: Array, strip: Array, start: Array) -> tuple[Array, Array]:
+def _line(bound: Array, edges: Array, strip: npt.NDArray[np.intp], start: Array) -> tuple[Array, Array]:
     """Values of the strips' lines at the start of each part, and their slopes."""
     slope = (bound[strip, 1] - bound[strip, 0]) / (edges[strip + 1] - edges[strip])
     return bound[strip, 0] + slope * (start - edges[strip]), slope

@@ -8,13 +8,13 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coord.alone.check import keeps_limits
-from coord.alone.inverse import time_at
 from coord.alone.polish import land_exactly
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
@@ -120,7 +120,7 @@ def _grid(tube: Tube, limits: Limits, departure: float, arrival: float) -> Array
     knots = sorted(t for t in events if departure <= t <= arrival)
     first = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02)
     times = [departure]
-    for start, end in zip(knots[:-1], knots[1:], strict=True):
+    for start, end in itertools.pairwise(knots):
         if end - start < 1e-6:  # two events at once
             times[-1] = end if len(times) > 1 else times[-1]
             continue

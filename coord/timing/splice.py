@@ -27,7 +27,7 @@ _ENDINGS = (0.0, 0.25, 0.6, 1.2, 2.5)
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """From ``since`` on (the contact's time, at arc length s) the delay must be at least (after) or at most ``delay``."""
+    """At the contact's place the delay must be at least (after) or at most (before) the contact's."""
 
     contact: Contact
     is_after: bool

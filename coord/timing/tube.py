@@ -67,7 +67,7 @@ def upper_on_cells(bound: Bound, times: Array, margin: float) -> Array:
 
 
 def lower_on_cells(bound: Bound, times: Array, margin: float) -> Array:
-    """Bezier bounds (N, 4) [m] that keep a cubic in each cell above a lower bound: the mirror image in time and space."""
+    """Bezier bounds (N, 4) [m] that keep a cubic in each cell above a lower bound: the mirror image."""
     mirrored = Bound(-bound.times[::-1], -bound.values[::-1, ::-1])
     return -upper_on_cells(mirrored, -times[::-1], margin)[::-1, ::-1]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -57,11 +56,7 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
     return Least(best, at)
 
 
-def merged(first: Least, second: Least) -> Least:
-    """Both findings as one."""
-    value, at = min((first.value, first.at), (second.value, second.at), key=_value)
-    return Least(value, at, first.open if first.open is not None else second.open)
-
-
-def _value(pair: tuple[float, float | None]) -> float:
-    return math.inf if pair[1] is None else pair[0]
+def joined(one: Least, then: Least) -> Least:
+    """Two searches as one, where the second began with the value the first had found."""
+    better = one if then.at is None else then
+    return Least(better.value, better.at, then.open if one.open is None else one.open)

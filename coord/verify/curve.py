@@ -147,7 +147,7 @@ def displacement(u: float, heading: float, cos: float, sin: float, k: float, rat
     half = k * u / 2
     if not half:
         return u * cos, u * sin
-    chord = u * math.sin(half) / half
+    chord = u * (math.sin(half) / half)  # in this order: u times a denormal number would lose digits
     return chord * math.cos(heading + half), chord * math.sin(heading + half)
 
 

@@ -50,7 +50,6 @@ def _plan(whole: form.Table, robots: tuple[Robot, ...]) -> Plan:
     xmin, ymin, xmax, ymax = form.numbers(workspace["bounds"], "the workspace's bounds", 4)
     if not (xmin < xmax and ymin < ymax):
         raise MalformedError("the workspace's bounds are xmin, ymin, xmax, ymax with xmin < xmax and ymin < ymax")
-    result = form.table(whole["result"], "result", _RESULT)
     return Plan(
         bounds=(xmin, ymin, xmax, ymax),
         clearance=form.number(workspace["clearance"], "the clearance", 0.0),
@@ -59,11 +58,18 @@ def _plan(whole: form.Table, robots: tuple[Robot, ...]) -> Plan:
         robots=robots,
         order=form.texts(whole["order"], "order"),
         blocking=tuple(_blocking(item) for item in form.array(whole["blocking"], "blocking")),
-        figures=Figures(
-            *(form.number(result[key], f"the result's {key}") for key in Figures.__slots__[:3]),
-            form.text(result["lower_bound_by"], "the result's lower_bound_by"),
-            form.number(result["optimality_gap"], "the result's optimality_gap"),
-        ),
+        figures=_result(whole["result"]),
+    )
+
+
+def _result(value: object) -> Figures:
+    result = form.table(value, "result", _RESULT)
+    return Figures(
+        sum_of_arrivals=form.number(result["sum_of_arrivals"], "the result's sum_of_arrivals"),
+        makespan=form.number(result["makespan"], "the result's makespan"),
+        lower_bound=form.number(result["lower_bound"], "the result's lower_bound"),
+        lower_bound_by=form.text(result["lower_bound_by"], "the result's lower_bound_by"),
+        optimality_gap=form.number(result["optimality_gap"], "the result's optimality_gap"),
     )
 
 

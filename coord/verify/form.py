@@ -90,7 +90,7 @@ def numbers(value: object, where: str, count: int | None = None) -> tuple[float,
     if isinstance(value, list) and (count is None or len(value) == count):
         if not value:
             return ()
-        if set(map(type, value)) == {float} and -LARGEST_NUMBER <= min(value) and max(value) <= LARGEST_NUMBER:
+        if set(map(type, value)) == {float} and min(value) >= -LARGEST_NUMBER and max(value) <= LARGEST_NUMBER:
             return tuple(value)
     size = "" if count is None else f"{count} "
     raise MalformedError(f"{where} must be a list of {size}finite numbers, at most {LARGEST_NUMBER:g} in size")

@@ -7,7 +7,7 @@ import math
 from coord.verify.bisection import Bound, descend
 from coord.verify.curve import Curve, Piece, point, pose_at
 from coord.verify.motion import Motion, Stretch, acceleration, arc_length, speed
-from coord.verify.records import Limits, Point, Robot
+from coord.verify.records import Point, Robot
 from coord.verify.report import Findings, at, who
 from coord.verify.tolerances import ACCELERATION, LARGEST_TIME, POSITION, RELATIVE, SPEED, TIME
 
@@ -45,7 +45,9 @@ def _faults_of_chain(robot: Robot, path: Curve) -> list[str]:
         h = times[k + 1] - times[k]
         s, v, a = states[k]
         if not h > 0.0:
-            faults.append(f"the times of its profile must increase (t = {times[k + 1]:.12g} s follows {times[k]:.12g} s)")
+            faults.append(
+                f"the times of its profile must increase (t = {times[k + 1]:.12g} s follows {times[k]:.12g} s)"
+            )
             continue
         s1, v1, a1 = states[k + 1]
         ds, dv, da = s + h * (v + h * (a / 2 + h * j / 6)) - s1, v + h * (a + h * j / 2) - v1, a + h * j - a1

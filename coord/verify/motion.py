@@ -1,4 +1,4 @@
-"""Where a robot is at every time: its path driven by its velocity profile, cut into stretches of constant jerk and piece."""
+"""Where a robot is at every time: its path, driven by its velocity profile."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _cut(path: Curve, whole: Stretch) -> list[Stretch]:
 
 
 def _passing(stretch: Stretch, s: float, begin: float) -> float:
-    """The time at which an arc length is reached, by regula falsi (Illinois) and halving, to the last digit if need be."""
+    """The time at which an arc length is reached, by regula falsi (Illinois) and halving."""
     lo, hi = begin, stretch.end
     below, above = arc_length(stretch, lo) - s, arc_length(stretch, hi) - s
     side = 0

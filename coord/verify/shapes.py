@@ -16,6 +16,9 @@ Ring = tuple[Point, ...]
 #: What a disc is made of before it is grown by its radius.
 CENTRE: Ring = ((0.0, 0.0),)
 
+#: [m] Nearer to a corner than this, the direction from it is noise, and that of an edge serves better.
+_CORNER = 1e-12
+
 
 @dataclass(frozen=True, slots=True)
 class Body:
@@ -137,10 +140,11 @@ def gap(q: Point, ring: Ring) -> tuple[float, float, float]:
         if side > deepest:
             deepest, dx, dy = side, ey / size, -ex / size
         if side >= 0.0:
-            if 0.0 <= along <= size:
-                distance, nx, ny = side, ey / size, -ex / size
-            else:
-                distance, nx, ny = _from_point(q, (ax, ay) if along < 0.0 else (bx, by))
+            distance, nx, ny = side, ey / size, -ex / size
+            if not 0.0 <= along <= size:
+                beyond = _from_point(q, (ax, ay) if along < 0.0 else (bx, by))
+                if beyond[0] > _CORNER:
+                    distance, nx, ny = beyond
             if distance < nearest:
                 nearest, mx, my = distance, nx, ny
     if deepest >= 0.0 and nearest < math.inf:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from coord.errors import InvalidValueError
 from coord.model.result import Plan
 from coord.output.plots.profiles import profiles
 from coord.output.plots.st import st
@@ -30,8 +31,7 @@ def draw(plan: Plan, what: str, robot: str | None = None) -> bytes:
     InvalidValueError
         When no robot has this name, or ``what`` is none of the kinds.
     """
-    if what == "profiles":
-        return png(lambda: profiles(plan, robot))
-    if what == "st":
-        return png(lambda: st(plan, robot))
-    return png(lambda: workspace(plan, robot))
+    kinds = {"workspace": workspace, "profiles": profiles, "st": st}
+    if what not in kinds:
+        raise InvalidValueError([("what", f'there is no picture "{what}"; there are {", ".join(KINDS)}')])
+    return png(lambda: kinds[what](plan, robot))

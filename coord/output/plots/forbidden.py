@@ -11,8 +11,8 @@ from coord.model.arrays import Array
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.outlines import line
 
-#: Samples along each axis of a window.
-_SAMPLES = 400
+#: Samples along each axis, while a window is looked for and when it is drawn.
+_COARSE, _FINE = 150, 400
 
 
 class Window(NamedTuple):
@@ -41,20 +41,26 @@ def windows(plan: Plan, ego: RobotPlan, until: float) -> list[Window]:
 
 
 def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: float) -> Window | None:
-    """Sample coarsely to find where the two come near each other, then finely there."""
+    """Sample coarsely to find where the two may come near each other, then finely there."""
     end = other.arrival if plan.problem.workspace.after_arrival == "leave" else until
     if end <= 0 or ego.path.length == 0:
         return None
-    t_range, s_range = (0.0, min(end, until)), (0.0, ego.path.length)
-    for _ in range(2):
-        t, s = np.linspace(*t_range, _SAMPLES), np.linspace(*s_range, _SAMPLES)
-        here, there = ego.path.point(s), other.path.point(other.profile.state(t)[:, 0])
-        gap = np.hypot(here[:, None, 0] - there[:, 0], here[:, None, 1] - there[:, 1]) - reach
-        rows, columns = np.nonzero(gap.min(axis=1) < 0.1 * reach)[0], np.nonzero(gap.min(axis=0) < 0.1 * reach)[0]
-        if not len(rows):
-            return None
-        t_range, s_range = _widened(t, columns), _widened(s, rows)
+    t, s = np.linspace(0.0, min(end, until), _COARSE), np.linspace(0.0, ego.path.length, _COARSE)
+    # between two samples the distance changes by no more than both can move on the way to the nearer one
+    slack = (s[1] + t[1] * other.robot.limits.speed) / 2
+    near = _gap(ego, other, t, s) < reach + slack
+    if not near.any():
+        return None
+    t = np.linspace(*_widened(t, np.nonzero(near.any(axis=0))[0]), _FINE)
+    s = np.linspace(*_widened(s, np.nonzero(near.any(axis=1))[0]), _FINE)
+    gap = _gap(ego, other, t, s) - reach
     return Window(other, t, s, gap) if gap.min() < 0 else None
+
+
+def _gap(ego: RobotPlan, other: RobotPlan, t: Array, s: Array) -> Array:
+    """Distances (m, n) [m] between ego's centre at s (m,) and the other's at t (n,)."""
+    here, there = ego.path.point(s), other.path.point(other.profile.state(t)[:, 0])
+    return np.hypot(here[:, None, 0] - there[:, 0], here[:, None, 1] - there[:, 1])
 
 
 def _widened(values: Array, chosen: npt.NDArray[np.intp]) -> tuple[float, float]:

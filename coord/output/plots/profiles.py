@@ -34,24 +34,26 @@ def profiles(plan: Plan, robot: str | None = None) -> Figure:
     rows = math.ceil(len(chosen) / columns)
     single = columns == 1
     figure = new_figure(7.6 if single else max(3.2 * columns, 7.6), 4.8 if single else 3.3 * rows + 1.0)
-    end = max(plan.robots[k].arrival for k in chosen)
+    end = 1.03 * max(plan.robots[k].arrival for k in chosen) or 1.0
     grid = figure.add_gridspec(rows, columns)
     for place, k in enumerate(chosen):
         cells = grid[place // columns, place % columns].subgridspec(3, 1, height_ratios=(2, 1, 1))
         axes = [figure.add_subplot(cells[0])]
         axes += [figure.add_subplot(cells[row], sharex=axes[0]) for row in (1, 2)]
-        profile(plan.robots[k], axes, colour(k), labels=place % columns == 0)
-        axes[0].set_xlim(0, end * 1.03 or 1.0)
+        profile(plan.robots[k], axes, colour(k), end, labels=place % columns == 0)
     title = f"{shown(plan.problem.name, 60) or 'Plan'}: how the robots drive, over time"
     figure.suptitle(title + note, x=0.01, ha="left", fontsize=11)
     figure.legend(handles=_legend(), loc="outside lower left", ncols=3)
     return figure
 
 
-def profile(robot: RobotPlan, axes: list[Axes], line_colour: str, labels: bool = True) -> None:
-    """Draw one robot's speed, acceleration and jerk into three axes, with its limits and its motion alone."""
+def profile(robot: RobotPlan, axes: list[Axes], line_colour: str, end: float, labels: bool = True) -> None:
+    """Draw one robot's speed, acceleration and jerk into three axes, with its limits and its motion alone.
+
+    ``end`` [s] is where the time axis ends; ``labels`` writes the quantities beside the axes.
+    """
     limits = robot.robot.limits
-    axes[0].plot(*_speed_limit(robot), color=_LIMIT, lw=0.7, zorder=1)
+    axes[0].plot(*_speed_limit(robot, end), color=_LIMIT, lw=0.7, zorder=1)
     for ax, low, high in zip(
         axes[1:], (-limits.deceleration, -limits.jerk), (limits.acceleration, limits.jerk), strict=True
     ):
@@ -70,6 +72,7 @@ def profile(robot: RobotPlan, axes: list[Axes], line_colour: str, labels: bool =
         axes[0].plot(t, v, **options)
         axes[1].plot(t, a, **options)
         axes[2].plot(t, j, **options)
+    axes[0].set_xlim(0, end)
     axes[2].set_xlabel("time [s]", fontsize=8)
     late = f"{delay(robot):.2f} s later than alone" if delay(robot) > 0.005 else "as if alone"
     axes[0].set_title(f"{shown(robot.robot.name, 20)}: at its goal after {robot.arrival:.2f} s,\n{late}", fontsize=8.5)
@@ -89,7 +92,8 @@ def _choose(plan: Plan, name: str | None) -> tuple[list[int], str]:
     if not late:
         return list(range(MOST_ROBOTS)), f"\n(the first {MOST_ROBOTS} of {count} robots; nobody is delayed)"
     first = late[:MOST_ROBOTS]
-    note = f"the first {len(first)} of {len(late)} delayed robots; {count} robots in all; others with --robot NAME"
+    some = f"the first {len(first)} of {len(late)}" if len(first) < len(late) else f"the {len(late)}"
+    note = f"{some} delayed robots; {count} robots in all; others with --robot NAME"
     return first, f"\n({note})"
 
 
@@ -103,14 +107,14 @@ def _curves(motion: VelocityProfile) -> tuple[Array, Array, Array, Array]:
     return t, v, a, jerks
 
 
-def _speed_limit(robot: RobotPlan) -> tuple[Array, Array]:
+def _speed_limit(robot: RobotPlan, end: float) -> tuple[Array, Array]:
     """The highest speed allowed where the robot is, over time: in bends the lateral acceleration caps it."""
     limits, profile = robot.robot.limits, robot.profile
     t = np.linspace(profile.departure, profile.arrival, 1 if robot.path.is_straight else 1000)
     bend = np.abs(robot.path.curvature(profile.state(t)[:, 0]))
     with np.errstate(divide="ignore"):
         cap = np.minimum(limits.speed, np.sqrt(limits.lateral_acceleration / bend))
-    return np.concatenate([[0.0], t, [2 * profile.arrival + 1]]), np.concatenate([cap[:1], cap, cap[-1:]])
+    return np.concatenate([[0.0], t, [max(end, profile.arrival)]]), np.concatenate([cap[:1], cap, cap[-1:]])
 
 
 def _legend() -> list[Artist]:

@@ -1,0 +1,129 @@
+"""Which places, segments and arcs keep the distance from grown obstacles: the tests behind the path search."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from coord.geometry.growth import Grown
+from coord.model.arrays import Array
+
+#: [m] Contact is no hit: a tangent touches the disc it leaves.
+_TOUCH = 1e-9
+
+#: [rad] Blocked stretches of a circle shorter than this come from rounding at a contact.
+_SLIVER = 1e-7
+
+
+class Floor:
+    """Grown obstacles with an index, and the distance the search keeps from each part."""
+
+    def __init__(self, grown: Grown, rho: Array) -> None:
+        """Use ``rho`` (m,) [m] for the parts: a little more than needed, less near the start and the goal."""
+        self.grown = grown
+        self.rho = rho
+        self._tree = shapely.STRtree(_boxes(grown, rho))
+
+    def hit_parts(self, segments: Array) -> npt.NDArray[np.intp]:
+        """Pairs (k, 2) of a segment's index and a part's, where segments (n, 4) come too near to a part."""
+        if not len(segments) or not len(self.grown.parts):
+            return np.empty((0, 2), dtype=np.intp)
+        lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+        line, part = self._tree.query(lines, predicate="intersects")
+        near = shapely.dwithin(self.grown.parts[part], lines[line], np.maximum(self.rho[part] - _TOUCH, 0.0))
+        return np.stack([line[near], part[near]], axis=1)
+
+    def near_parts(self, box: tuple[float, float, float, float]) -> npt.NDArray[np.intp]:
+        """Parts whose grown boxes meet a box, ascending."""
+        if not len(self.grown.parts):
+            return np.empty(0, dtype=np.intp)
+        return np.sort(self._tree.query(shapely.box(*box)))
+
+    def blocked_angles(self, center: Array, radius: float, parts: npt.NDArray[np.intp]) -> Array:
+        """Open stretches (k, 2) [rad] of a circle that come too near to some of the parts or leave the box.
+
+        Each begins in [0, 2 pi) and may end beyond 2 pi. Exact: the circle meets the boundary of a segment
+        grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
+        it is wholly inside or wholly outside, which its middle tells.
+        """
+        chosen = np.flatnonzero(np.isin(self.grown.edge_parts, parts))
+        edges, rho = self.grown.edges[chosen], self.rho[self.grown.edge_parts[chosen]]
+        low, high = np.minimum(edges[:, :2], edges[:, 2:]), np.maximum(edges[:, :2], edges[:, 2:])
+        reach = (rho + radius)[:, None]
+        near = np.all((low - reach < center) & (center < high + reach), axis=1)
+        edges, rho = edges[near], rho[near]
+        angles = np.concatenate(
+            [_segment_angles(center, radius, edges, rho), _box_angles(center, radius, self.grown.box)]
+        )
+        cuts = np.unique(angles[np.isfinite(angles)] % (2 * np.pi))
+        if not len(cuts):
+            cuts = np.array([0.0])
+        ends = np.append(cuts[1:], cuts[0] + 2 * np.pi)
+        middle = (cuts + ends) / 2
+        at = center + radius * np.stack([np.cos(middle), np.sin(middle)], axis=1)
+        inside = (_segment_distance(at, edges) < rho[None] - _TOUCH).any(axis=1) | _outside(at, self.grown.box)
+        inside &= ends - cuts > _SLIVER
+        return np.stack([cuts[inside], ends[inside]], axis=1)
+
+
+def _boxes(grown: Grown, rho: Array) -> npt.NDArray[np.object_]:
+    if not len(grown.parts):
+        return np.empty(0, dtype=object)
+    bounds = shapely.bounds(grown.parts)
+    return np.asarray(shapely.box(*(bounds[:, :2] - rho[:, None]).T, *(bounds[:, 2:] + rho[:, None]).T))
+
+
+def _segment_angles(center: Array, radius: float, edges: Array, rho: Array) -> Array:
+    """Angles at which the circle meets the discs about the ends of edges and the lines beside them."""
+    found = []
+    for end in (edges[:, :2], edges[:, 2:]):
+        gap = end - center
+        far = np.hypot(gap[:, 0], gap[:, 1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            opening = np.arccos((far**2 + radius**2 - rho**2) / (2 * far * radius))
+        toward = np.arctan2(gap[:, 1], gap[:, 0])
+        found += [toward - opening, toward + opening]
+    along = edges[:, 2:] - edges[:, :2]
+    length = np.hypot(along[:, 0], along[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        unit = along / length[:, None]
+        normal = np.stack([-unit[:, 1], unit[:, 0]], axis=1)
+        offset = ((center - edges[:, :2]) * normal).sum(axis=1)
+        toward = np.arctan2(normal[:, 1], normal[:, 0])
+        for line in (rho - offset, -rho - offset):
+            opening = np.arccos(line / radius)
+            found += [toward - opening, toward + opening]
+    return np.concatenate(found)
+
+
+def _box_angles(center: Array, radius: float, box: tuple[float, float, float, float]) -> Array:
+    xmin, ymin, xmax, ymax = box
+    walls = (
+        (0.0, xmax - center[0]),
+        (np.pi / 2, ymax - center[1]),
+        (np.pi, center[0] - xmin),
+        (-np.pi / 2, center[1] - ymin),
+    )
+    angles: list[float] = []
+    for toward, line in walls:
+        if abs(line) <= radius:
+            opening = float(np.arccos(line / radius))
+            angles += [toward - opening, toward + opening]
+    return np.array(angles)
+
+
+def _segment_distance(points: Array, edges: Array) -> Array:
+    """Distances (p, e) [m] of points from segments."""
+    a, along = edges[:, :2], edges[:, 2:] - edges[:, :2]
+    gap = points[:, None] - a[None]
+    square = (along**2).sum(axis=1)
+    share = np.clip((gap * along[None]).sum(axis=2) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    rest = gap - share[..., None] * along[None]
+    return np.asarray(np.hypot(rest[..., 0], rest[..., 1]))
+
+
+def _outside(points: Array, box: tuple[float, float, float, float]) -> npt.NDArray[np.bool_]:
+    xmin, ymin, xmax, ymax = box
+    x, y = points.T
+    return np.asarray((x < xmin - _TOUCH) | (x > xmax + _TOUCH) | (y < ymin - _TOUCH) | (y > ymax + _TOUCH))
