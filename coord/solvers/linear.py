@@ -19,8 +19,9 @@ SIZES = (8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 256, 320
 #: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
 _DIAGONAL = 1e-7
 
-#: [m] Stands for "no bound": rows without any finite bound make PIQP print.
-_FAR = 1e7
+#: [m] Where no bound on s is set, these much beyond what speed allows are: rows without any finite bound make
+#: PIQP print, and bounds far away (1e7 m) make it run out of iterations.
+_BEYOND = 1.0
 
 #: [m/s] Between departure and arrival the program's robot creeps at least this fast, so that rounding
 #: cannot make it move backwards.
@@ -60,7 +61,7 @@ def _solve(cells: Cells, limits: Limits, length: float | None) -> Array | None:
     """Unknowns s, v, a, j for each cell, then the last s, v, a."""
     n = len(cells.h)
     low, high = _variable_bounds(cells, limits, length)
-    row_low, row_high = _row_bounds(cells)
+    row_low, row_high = _row_bounds(cells, _farthest_end(cells, limits))
     if np.any(low > high) or np.any(row_low > row_high):
         return None
     solver, a_pattern, h_pattern, order = _program(n)
@@ -85,7 +86,7 @@ def _solve(cells: Cells, limits: Limits, length: float | None) -> Array | None:
 def _variable_bounds(cells: Cells, limits: Limits, length: float | None) -> tuple[Array, Array]:
     n = len(cells.h)
     low, high = np.empty((n + 1, 4)), np.empty((n + 1, 4))
-    low[:, 0], high[:, 0] = -_FAR, _FAR
+    low[:, 0], high[:, 0] = -_BEYOND, _farthest_end(cells, limits)
     np.maximum(low[:-1, 0], cells.lower[:, 0], out=low[:-1, 0])
     np.maximum(low[1:, 0], cells.lower[:, 3], out=low[1:, 0])
     np.minimum(high[:-1, 0], cells.upper[:, 0], out=high[:-1, 0])
@@ -102,11 +103,16 @@ def _variable_bounds(cells: Cells, limits: Limits, length: float | None) -> tupl
     return low.ravel()[:-1], high.ravel()[:-1]
 
 
-def _row_bounds(cells: Cells) -> tuple[Array, Array]:
+def _farthest_end(cells: Cells, limits: Limits) -> float:
+    """An arc length [m] that no motion gets to."""
+    return limits.speed * float(cells.h.sum()) + _BEYOND
+
+
+def _row_bounds(cells: Cells, end: float) -> tuple[Array, Array]:
     """Three equations of motion a cell, then the two inner Bezier points of s and the middle one of v."""
     n = len(cells.h)
     low, high = np.zeros((n, 6)), np.zeros((n, 6))
-    low[:, 3:5], high[:, 3:5] = np.maximum(cells.lower[:, 1:3], -_FAR), np.minimum(cells.upper[:, 1:3], _FAR)
+    low[:, 3:5], high[:, 3:5] = np.maximum(cells.lower[:, 1:3], -_BEYOND), np.minimum(cells.upper[:, 1:3], end)
     low[:, 5], high[:, 5] = CREEP, cells.caps
     low[[0, -1], 5] = -CREEP  # at rest at both ends
     return low.ravel(), high.ravel()

@@ -12,8 +12,7 @@ from coord.verify.tolerances import BOX
 #: Number, xmin, ymin, xmax, ymax [m].
 Box = tuple[int, float, float, float, float]
 
-#: [s] Length of a slab, and how many boxes there may be in all before slabs are made longer.
-_SLAB = 1.0
+#: How many boxes there may be in all before slabs are made longer.
 _BOXES = 2_000_000
 
 #: Boxes over more cells than this are compared with everything instead.
@@ -82,18 +81,17 @@ def grown(box: Box, by: float) -> Box:
     return box[0], box[1] - by, box[2] - by, box[3] + by, box[4] + by
 
 
-def cell_size(margins: Sequence[float], motions: Sequence[Motion], slab: float) -> float:
-    """A good size of cells [m]: twice the usual extent of the grown boxes."""
+def sizes(margins: Sequence[float], motions: Sequence[Motion]) -> tuple[float, float]:
+    """A good length of slabs [s] and size of cells [m] for boxes grown by these margins [m].
+
+    A slab is the time in which a usual robot drives four times its own size: with shorter ones, most of the work is
+    to fill the grid, with longer ones to look at pairs that do not meet. A cell is twice a usual box.
+    """
+    size = 2 * math.fsum(margins) / len(margins)
     time = math.fsum(motion.arrival - motion.departure for motion in motions)
     way = math.fsum(motion.path.length for motion in motions)
-    usual = 2 * math.fsum(margins) / len(margins) + (way / time * slab if time > 0.0 else 0.0)
-    return max(2 * usual, 1e-3)
-
-
-def slab_length(motions: Sequence[Motion]) -> float:
-    """The length of the slabs of time [s]: one second, unless that made too many boxes."""
-    total = math.fsum(motion.arrival - motion.departure for motion in motions)
-    return max(_SLAB, total / _BOXES)
+    slab = max(4 * size * time / way if way > 0.0 else 1.0, time / _BOXES, 1e-3)
+    return slab, max(2 * size + 2 * slab * (way / time if time > 0.0 else 0.0), 1e-3)
 
 
 def slabs(motions: Sequence[tuple[int, Motion]], slab: float) -> Iterator[tuple[int, list[Box]]]:

@@ -41,9 +41,11 @@ def _faults_of_chain(robot: Robot, path: Curve) -> list[str]:
             faults.append(f"{words} (got s = {s:.12g} m, v = {v:.12g} m/s, a = {a:.12g} m/s2)")
     if robot.jerks and not path.pieces:
         faults.append("its path has no length, so its profile must have no phases")
+    highest = 0.0
     for k, j in enumerate(robot.jerks):
         h = times[k + 1] - times[k]
         s, v, a = states[k]
+        highest = max(highest, s)
         if not h > 0.0:
             faults.append(
                 f"the times of its profile must increase (t = {times[k + 1]:.12g} s follows {times[k]:.12g} s)"
@@ -55,7 +57,7 @@ def _faults_of_chain(robot: Robot, path: Curve) -> list[str]:
             text = f"the state at its knot {k + 1}, t = {times[k + 1]:.9g} s, does not follow from the one before"
             faults.append(f"{text} (it is off by {ds:.3g} m, {dv:.3g} m/s, {da:.3g} m/s2)")
         slowest = min(v, v + h * (a + h * j / 2), _at_turn(v, a, j, h))
-        if not -slowest * h <= POSITION:
+        if not (-slowest * h <= POSITION and s1 >= highest - POSITION):
             text = f"drives backwards between t = {times[k]:.9g} s and {times[k + 1]:.9g} s"
             faults.append(f"it {text} (speed {slowest:.9g} m/s); speeds must be >= 0")
     return faults

@@ -13,6 +13,7 @@ from coord.verify.curve import Curve, Piece, point, pose_at
 from coord.verify.floor import Floor, Part, holders
 from coord.verify.records import Circle, Plan, Point, Polygon, Robot
 from coord.verify.report import Findings, at, who
+from coord.verify.shapes import inner_point
 from coord.verify.tolerances import BOX, DISTANCE
 
 _EDGES = (("left", (-1.0, 0.0)), ("lower", (0.0, -1.0)), ("right", (1.0, 0.0)), ("upper", (0.0, 1.0)))
@@ -33,9 +34,9 @@ def check_workspace(robot: Robot, path: Curve, plan: Plan, findings: Findings) -
 def check_obstacles(robots: Sequence[Robot], paths: Sequence[Curve], plan: Plan, findings: Findings) -> None:
     """Check that no robot begins inside an obstacle, and that none comes too near to one.
 
-    Both together mean that no path enters an obstacle: it would have to come near its edge first.
+    Both together mean that none is ever inside one: a point inside its footprint would have to pass the edge first.
     """
-    starts = [path.start[:2] for path in paths]
+    starts = [inner_point(robot.body, path.start) for robot, path in zip(robots, paths, strict=True)]
     inside = set()
     for k, number in holders(starts, plan.obstacles):
         inside.add((k, number))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from coord.verify.approach import approach, resting
-from coord.verify.broad import Grid, candidates, cell_size, grown, runs, slab_length, slabs
+from coord.verify.broad import Grid, candidates, grown, runs, sizes, slabs
 from coord.verify.curve import Pose
 from coord.verify.motion import pose, time_at, travelled
 from coord.verify.report import Clearance, Findings, at, who
@@ -132,8 +132,7 @@ def _search_all(movers: Sequence[Mover], rests: Sequence[_Rest], reach: float, s
     margins = [mover.body.reach + reach / 2 + BOX for mover in movers]
     still = [grown((k, *rest.pose[:2], *rest.pose[:2]), margins[rest.robot]) for k, rest in enumerate(rests)]
     moving = [(k, mover.motion) for k, mover in enumerate(movers) if mover.motion.stretches]
-    slab = slab_length([motion for _, motion in moving])
-    size = cell_size(margins, [motion for _, motion in moving], slab)
+    slab, size = sizes(margins, [motion for _, motion in moving])
     grid = Grid(size)
     for box in still:
         for other in grid.near(box):

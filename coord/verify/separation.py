@@ -102,7 +102,7 @@ def _linear(first: _Leg, second: _Leg, ring: Ring, t0: float) -> Bound:
         fa = nx * (x0 + ha * (x1 + ha * (x2 + ha * x3))) + ny * (y0 + ha * (y1 + ha * (y2 + ha * y3)))
         fb = nx * (x0 + hb * (x1 + hb * (x2 + hb * x3))) + ny * (y0 + hb * (y1 + hb * (y2 + hb * y3)))
         sa, sb = 2 * (nx * x2 + ny * y2), 6 * (nx * x3 + ny * y3)
-        sinking = (tb - ta) ** 2 / 8 * max(0.0, -sa - ha * sb, -sa - hb * sb)
+        sinking = (tb - ta) ** 2 / 8 * max(0.0, sa + ha * sb, sa + hb * sb)
         return min(fa, fb) - level - sinking, value - total, ta + (tb - ta) / 2
 
     return bound
@@ -157,7 +157,7 @@ def _heading(leg: _Leg, t: float) -> float:
 
 
 def _bend(leg: _Leg, n: tuple[float, float], ta: float, tm: float, tb: float) -> float:
-    """How fast n.x may bend downwards between two times, at most [m/s2]."""
+    """An upper bound of n.x'' between two times [m/s2]."""
     stretch, piece = leg.stretch, leg.piece
     sa, sm, sb = arc_length(stretch, ta), arc_length(stretch, tm), arc_length(stretch, tb)
     curvatures = curvature(piece, sa), curvature(piece, sb)

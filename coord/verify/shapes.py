@@ -81,6 +81,12 @@ def turned(body: Body, heading: float) -> Ring:
     return tuple((c * x - s * y, s * x + c * y) for x, y in body.ring)
 
 
+def inner_point(body: Body, pose: tuple[float, float, float]) -> Point:
+    """A point well inside a footprint at a pose [m]; the reference point may lie on its edge."""
+    ring = turned(body, pose[2])
+    return pose[0] + sum(x for x, _ in ring) / len(ring), pose[1] + sum(y for _, y in ring) / len(ring)
+
+
 def mirrored(ring: Ring) -> Ring:
     """-K: every point reflected at the origin, still counter-clockwise."""
     return tuple((-x, -y) for x, y in ring)

@@ -1,7 +1,7 @@
 """How far a support function can sink between two places: the bound that turns two evaluations into a proof.
 
-For a function f of t with f'' <= B downwards, that is -f'' <= B on [a, b],
-min f >= min(f(a), f(b)) - (b - a)^2 / 8 * B.
+A function with f'' <= B on [a, b], B >= 0, hangs below its chord by (b - a)^2 / 8 * B at most, so
+min f >= min(f(a), f(b)) - (b - a)^2 / 8 * B. The least of several such functions obeys the same.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def bend(
     speed: float,
     corner: float,
 ) -> float:
-    """An upper bound of -n.x'' over all points x of a moving body [m/s2], maybe negative.
+    """An upper bound of n.x'' over all points x of a moving body [m/s2], maybe negative.
 
     x'' = a T + k v^2 N for the reference point; a corner at distance rho from it adds
     rho (k^2 v^2 + |k a| + |k'| v^2) at most if the body turns with its path.
@@ -37,7 +37,7 @@ def bend(
     along, aside = n[0] * c + n[1] * s, n[1] * c - n[0] * s
     (k0, k1), (a0, a1) = curvatures, accelerations
     k, a, square = max(abs(k0), abs(k1)), max(abs(a0), abs(a1)), speed * speed
-    bound = max(-a0 * along, -a1 * along) + a * turn + square * (max(0.0, -k0 * aside, -k1 * aside) + k * turn)
+    bound = max(a0 * along, a1 * along) + a * turn + square * (max(0.0, k0 * aside, k1 * aside) + k * turn)
     if corner:
         bound += corner * (k * k * square + k * a + abs(rate) * square)
     return bound

@@ -52,7 +52,7 @@ LARGEST_TURN: Final = 1e4
 HALVINGS: Final = 100_000
 
 #: [1] Halvings spent on how bad a violation is, once there is one.
-HALVINGS_REFUSED: Final = 2_000
+HALVINGS_REFUSED: Final = 300
 
 #: [1] Findings reported at most.
 FINDINGS: Final = 20

@@ -56,7 +56,19 @@ def test_the_plan_all_faults_start_from_is_certified(good, build):
         b'{"a":' * 100_000 + b"1" + b"}" * 100_000,
         b"9" * 10_000,
     ],
-    ids=["empty", "utf16", "cut", "list", "null", "huge", "format", "keys", "deep lists", "deep objects", "long number"],
+    ids=[
+        "empty",
+        "utf16",
+        "cut",
+        "list",
+        "null",
+        "huge",
+        "format",
+        "keys",
+        "deep lists",
+        "deep objects",
+        "long number",
+    ],
 )
 def test_bytes_that_are_no_plan_are_malformed(data):
     """Nothing is raised, and the one finding says why."""

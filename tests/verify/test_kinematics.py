@@ -100,6 +100,20 @@ def test_driving_backwards_within_a_phase_is_refused(build):
     assert "speed" in codes(build, robot)
 
 
+def test_creeping_backwards_from_knot_to_knot_is_refused(build):
+    """Each phase rolls back by less than the margin, all of them together by ten times as much."""
+    robot = build.robot("a", (0, 0), (5, 0))
+    profile, n = robot["profile"], 20
+    rest = [[5.0, 0.0, 0.0]] * 1
+    for k in range(n):
+        profile["states"].insert(-1, [5.0 - 5e-10 * k, 0.0, 0.0])
+        profile["times"].append(profile["times"][-1] + 1.0)
+        profile["jerks"].append(0.0)
+    robot["arrival"] = profile["times"][-1]
+    assert rest == profile["states"][-1:]
+    assert "profile" in codes(build, robot)
+
+
 def test_departure_before_release_is_refused(build):
     """A robot may wait, but not leave early."""
     assert codes(build, build.robot("a", (0, 0), (5, 0), release=2.0, departure=2.5)) == set()

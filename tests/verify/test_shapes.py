@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 from coord.verify.shapes import Body, gap, minkowski, mirrored, polygon, polygon_fault, support, translated, turned
 
 angles = st.lists(st.floats(0, 2 * math.pi), min_size=3, max_size=7, unique_by=lambda a: round(a, 2)).filter(
-    lambda found: max((b - a) % (2 * math.pi) for a, b in zip(sorted(found), [*sorted(found)[1:], min(found)], strict=True)) < 3
+    lambda found: (
+        max((b - a) % (2 * math.pi) for a, b in zip(sorted(found), [*sorted(found)[1:], min(found)], strict=True)) < 3
+    )
 )
 rings = st.builds(
     lambda found, r, x, y: tuple((x + r * math.cos(a), y + r * math.sin(a)) for a in sorted(found)),

@@ -1,0 +1,79 @@
+"""Halving proves what holds, shows what does not, and says so when it cannot tell."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from coord.verify import bisection, verify
+from coord.verify.bisection import Least, descend, joined
+
+
+def parabola(least):
+    """f(t) = least + (t - 1)^2 with the bounds that halving needs."""
+
+    def f(t):
+        return least + (t - 1) ** 2
+
+    def bound(a, b):
+        return min(f(a), f(b)) - (b - a) ** 2 / 8 * 2, f((a + b) / 2), (a + b) / 2
+
+    return bound
+
+
+@pytest.mark.parametrize("least", [0.0, 1e-7, 3.0])
+def test_a_function_that_holds_is_proved(least):
+    """Also where it just touches, thanks to the margin in what is asked for."""
+    assert descend(parabola(least), -1.0, 4.0, -1e-9, -1e-9) == Least(-1e-9, None, None)
+
+
+@pytest.mark.parametrize("least", [-1e-6, -0.5])
+def test_a_function_that_fails_is_shown_failing(least):
+    """With a place, and the worst value to within the resolution."""
+    found = descend(parabola(least), -1.0, 4.0, -1e-9, -1e-9)
+    assert found.value == pytest.approx(least, abs=5e-7)
+    assert found.value >= least
+    assert found.value == least + (found.at - 1) ** 2
+
+
+def test_the_least_value_is_found_when_it_is_asked_for():
+    """Below a best value known before, to within the resolution; not looked for above it."""
+    assert descend(parabola(0.3), -1.0, 4.0, 0.0, 1.0).value == pytest.approx(0.3, abs=5e-7)
+    assert descend(parabola(0.3), -1.0, 4.0, 0.0, 0.2) == Least(0.2, None, None)
+
+
+def test_another_one_that_failed_before_excuses_nobody():
+    """A best value below what is asked for still leaves everything to be proved."""
+    found = descend(parabola(-0.5), -1.0, 4.0, 0.0, -2.0)
+    assert found.value < 0.0
+    assert found.at is not None
+
+
+def test_bounds_that_never_come_together_stay_open():
+    """Neither proved nor refuted; and a bound that is no number proves nothing."""
+    assert descend(lambda a, b: (-1.0, 1.0, a), 0.0, 1.0, 0.0, 0.0).open is not None
+    assert descend(lambda a, b: (math.nan, math.nan, a), 0.0, 1.0, 0.0, 0.0).open is not None
+
+
+def test_joined_searches_keep_the_better_place_and_the_first_open_one():
+    """The second one began with the value of the first."""
+    assert joined(Least(1.0, 4.0), Least(1.0, None, 6.0)) == Least(1.0, 4.0, 6.0)
+    assert joined(Least(1.0, 4.0, 5.0), Least(0.5, 7.0, 6.0)) == Least(0.5, 7.0, 5.0)
+
+
+def test_what_is_left_open_is_not_certified(build, monkeypatch):
+    """With three halvings allowed, two robots side by side in a bend are neither certified nor refused."""
+
+    def circling(name, radius):
+        limits = {key: value * radius / 2 for key, value in build.limits.items()} | {"lateral_acceleration": 100.0}
+        return build.robot(name, (0, -radius), pieces=[[radius, 1 / radius, 1 / radius]], limits=limits)
+
+    data = build.data(build.plan([circling("a", 2.0), circling("b", 2.6501)]))
+    assert verify(data).verdict == "certified"
+    monkeypatch.setattr(bisection, "HALVINGS", 3)
+    report = verify(data)
+    assert report.verdict == "undecided"
+    assert not report.certified
+    (fault,) = report.faults
+    assert (fault.code, fault.robots) == ("undecided", ("a", "b"))
