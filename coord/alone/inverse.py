@@ -36,14 +36,16 @@ def increasing_root(coefficients: Array, h: Array) -> Array:
     c0, c1, c2, c3 = coefficients
     low, high = np.zeros_like(h), h.copy()
     u = np.where(c1 * h > 0, np.clip(-c0 / np.where(c1 * h > 0, c1, 1.0), 0.0, h), h / 2)
+    resolved = 4e-16 * (1 + h)
     for _ in range(80):
         value = c0 + u * (c1 + u * (c2 + u * c3))
-        low, high = np.where(value < 0, u, low), np.where(value < 0, high, u)
+        below = value < 0
+        low, high = np.where(below, u, low), np.where(below, high, u)
         slope = c1 + u * (2 * c2 + u * 3 * c3)
         step = u - value / np.where(slope > 0, slope, np.inf)
-        inside = (slope > 0) & (step > low) & (step < high)
+        inside = (slope > 0) & (step >= low) & (step <= high)
         following = np.where(inside, step, (low + high) / 2)
-        if np.all((np.abs(following - u) <= 1e-15 * (1 + h)) | (high - low <= 1e-15 * (1 + h))):
-            return np.clip(following, 0.0, h)
+        if ((np.abs(following - u) <= resolved) | (high - low <= resolved)).all():
+            return np.asarray(following)
         u = following
-    return u
+    return np.asarray(u)

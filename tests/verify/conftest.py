@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -24,6 +25,12 @@ def ramp(speed: float, acceleration: float, jerk: float) -> list[tuple[float, fl
 
 def phases(length: float, limits: Json) -> list[tuple[float, float]]:
     """(duration, jerk) of the quickest motion from rest to rest over a length."""
+    return _phases(length, tuple(sorted(limits.items())))
+
+
+@lru_cache(maxsize=1000)
+def _phases(length: float, sorted_limits: tuple[tuple[str, float], ...]) -> list[tuple[float, float]]:
+    limits = dict(sorted_limits)
 
     def parts(v: float) -> tuple[list[tuple[float, float]], list[tuple[float, float]], float]:
         up = ramp(v, limits["acceleration"], limits["jerk"])

@@ -38,7 +38,7 @@ def test_a_path_ends_where_numerical_integration_ends(build, pieces, heading):
 @settings(max_examples=60, deadline=None)
 @given(pieces=pieces, share=st.floats(0, 1))
 def test_a_path_is_continuous_and_moves_no_faster_than_its_arc_length(pieces, share):
-    """Two points are never farther apart than the arc length between them, and the heading leads from one to the other."""
+    """Two points are never farther apart than the way between them, and the heading leads from one to the other."""
     path = curve((0.0, 0.0, 0.0), pieces)
     s, h = share * path.length, 1e-4
     x0, y0, angle = pose_at(path, s)

@@ -79,7 +79,7 @@ def shapes(robot, poses):
 
 def quickness(robot):
     """How far any point of a footprint moves for a metre of the path, at most."""
-    kind, size = next(iter(robot["footprint"].items()))
+    (kind,) = robot["footprint"]
     corner = {"disc": 0.0, "square": 0.8, "polygon": 0.8}[kind] if robot["heading"] == "path" else 0.0
     return 1 + corner * max(abs(k) for piece in robot["path"]["pieces"] for k in piece[1:])
 
@@ -186,7 +186,7 @@ def test_lateral_acceleration_agrees_with_sampling(build, given_robot):
     """The limit is set to what sampling saw, a little more and a little less."""
     robot = made(build, given_robot)
     path, profile = motion(robot)
-    times = np.unique(np.concatenate([np.linspace(0, robot["arrival"], 20 * STEPS), robot["profile"]["times"]]))
+    times = np.unique(np.concatenate([np.linspace(0, robot["arrival"], 6 * STEPS), robot["profile"]["times"]]))
     states = profile.state(times)
     sides = [np.abs(path.curvature(np.clip(states[:, 0] + e, 0, path.length))) for e in (-1e-9, 1e-9)]
     seen = float((states[:, 1] ** 2 * np.maximum(*sides)).max())
