@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, TypeAlias
 
@@ -17,8 +18,9 @@ State: TypeAlias = tuple[float, float, float]
 #: [s] Phases shorter than this are dropped: they carry no motion, and knots must stay distinct.
 SHORTEST_PHASE = 1e-10
 
-#: How far (m, m/s, m/s2) the end of the integrated phases may lie from the state asked for.
-END_SLACK = 1e-9
+#: How far (m, m/s, m/s2) the end of the phases may lie from the state asked for. Ruckig itself takes motions
+#: that miss it by 1e-8, which the checker would refuse.
+END_SLACK = 1e-10
 
 
 def motion(start: State, goal: State, limits: Limits, duration: float | None = None) -> VelocityProfile | None:
@@ -46,6 +48,41 @@ def motion(start: State, goal: State, limits: Limits, duration: float | None = N
         if profile is not None:
             return profile
     return None
+
+
+class LinkTimes:
+    """How long the quickest motion between two states takes, thousands of times over with the same limits.
+
+    Calling ``motion`` for that would spend most of its time on profiles that nobody looks at.
+    """
+
+    def __init__(self, limits: Limits) -> None:
+        """Prepare one request, of which only the states and the cap change."""
+        self._request = _request((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), limits, None)
+        _set_limits(self._request, limits, 1.0)
+        self._solver, self._trajectory = ruckig.Ruckig(1), ruckig.Trajectory(1)
+
+    def __call__(self, start: tuple[float, float], goal: tuple[float, float], length: float, cap: float) -> float:
+        """Duration [s] from (speed, acceleration) to (speed, acceleration) over ``length`` [m] below a cap [m/s].
+
+        Infinite where no such motion is found.
+        """
+        request = self._request
+        request.max_velocity = [cap]
+        request.current_velocity, request.current_acceleration = [start[0]], [start[1]]
+        request.target_velocity, request.target_acceleration = [goal[0]], [goal[1]]
+        request.target_position = [length]
+        try:
+            if not request.validate(True, True):
+                return math.inf
+            outcome = self._solver.calculate(request, self._trajectory)
+        except ruckig.RuckigError:
+            return math.inf
+        found = self._trajectory.profiles[0][0]
+        miss = max(abs(found.p[-1] - found.pf), abs(found.v[-1] - found.vf), abs(found.a[-1] - found.af))
+        if outcome != ruckig.Result.Working or miss > END_SLACK or min(found.v) < -END_SLACK:
+            return math.inf
+        return float(self._trajectory.duration)
 
 
 def rest_to_rest(length: float, limits: Limits) -> VelocityProfile:

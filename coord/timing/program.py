@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from coord.alone.check import keeps_limits
-from coord.alone.polish import land_exactly
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.solvers.linear import SIZES, Cells, farthest, smoothest
 from coord.timing.ego import Ego
+from coord.timing.polish import land_exactly
 from coord.timing.tube import Bound, lower_on_cells, upper_on_cells
 from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from coord.verify.curve import Piece, curvature, displacement, heading, point
+from coord.verify.tolerances import FLAT
 
 Point = tuple[float, float]
 
@@ -45,6 +46,7 @@ def arc_between(piece: Piece, s0: float, s1: float) -> Arc:
     middle = (s0 + s1) / 2
     x, y = point(piece, middle)
     k, angle = curvature(piece, middle), heading(piece, middle)
+    k = k if abs(k) >= FLAT else 0.0
     dx, dy = displacement(-h / 2, angle, math.cos(angle), math.sin(angle), k, 0.0)
     angle -= k * h / 2
     return Arc(x + dx, y + dy, math.cos(angle), math.sin(angle), k, h, abs(piece.rate) * h**3 / 48)

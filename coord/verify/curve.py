@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from coord.verify.quadrature import NODES
-from coord.verify.tolerances import ROUNDING
+from coord.verify.tolerances import FLAT, ROUNDING
 
 Pose = tuple[float, float, float]
 
@@ -121,9 +121,10 @@ def total_turn(pieces: Sequence[Sequence[float]]) -> float:
 
 
 def _merged(pieces: Sequence[Sequence[float]]) -> list[tuple[float, float, float]]:
-    """Lines that follow each other are one line."""
+    """Lines that follow each other are one line, and so are bends too slight to be any."""
     merged: list[tuple[float, float, float]] = []
-    for length, k0, k1 in pieces:
+    for length, *bends in pieces:
+        k0, k1 = (k if abs(k) >= FLAT else 0.0 for k in bends)
         if k0 == k1 == 0.0 and merged and merged[-1][1] == merged[-1][2] == 0.0:
             merged[-1] = (merged[-1][0] + length, 0.0, 0.0)
         else:

@@ -33,6 +33,9 @@ RESOLUTION: Final = 5e-7
 #: [m] A motion is cut where it passes from one piece of its path to the next, to within this.
 PIECE_END: Final = 1e-11
 
+#: [1/m] Less curvature than this is none: over 1e6 m it bends by 1e-18 m, and its reciprocal may not be a number.
+FLAT: Final = 1e-30
+
 #: [m] Boxes of the coarse search are wider by this, so that no rounding can part what touches.
 BOX: Final = 1e-6
 

@@ -137,13 +137,15 @@ def test_the_bound_holds_against_motions_nobody_planned(bends, random_limits, wa
         for _ in range(25):
             limits = random_limits(rng)
             slow = dataclasses.replace(limits, speed=min(limits.speed, (limits.lateral_acceleration / 3.0) ** 0.5))
-            motion = wander(rng, slow, 60)
+            motion = wander(rng, slow, 120)
             if motion.length < path.length:
                 continue
             tried += 1
-            at = np.interp(path.length, motion.state(np.linspace(0, motion.arrival, 4000))[:, 0], np.linspace(0, motion.arrival, 4000))
-            # it need not even come to rest, so the bound for a path cut there, less the landing, must hold
-            assert at >= solo_bound(path, limits) - limits.speed / limits.deceleration - limits.deceleration / limits.jerk
+            t = np.linspace(0.0, motion.arrival, 4000)
+            at = np.interp(path.length, motion.state(t)[:, 0], t)
+            # it does not come to rest there; a whole landing is more than that could cost
+            stop = limits.speed / limits.deceleration + limits.deceleration / limits.jerk
+            assert at + stop >= solo_bound(path, limits)
     assert tried > 20
 
 
@@ -161,12 +163,15 @@ def test_bends_cost_time_but_less_than_their_slowest_cap_all_the_way(bends, rand
 
 
 def test_one_slow_bend_between_long_straights_is_passed_at_its_cap():
-    """Both ramps and the bend in closed form: the whole is within 0.5 % of the best there is."""
+    """At least as quick as ramps before and behind the bend in closed form, never quicker than without a jerk limit."""
     limits = Limits(2.0, 0.5, 0.5, 2.0, 0.5)
     cap, bend, lead = 1.0, np.pi / 2 * 2.0, 30.0
     path = Path((0.0, 0.0, 0.0), [(lead, 0, 0), (bend, 0.5, 0.5), (lead, 0, 0)])
-    # rest to 2 m/s, 2 to 1 m/s, bend at 1 m/s, 1 to 2 m/s, 2 m/s to rest
-    rest, change = ramp_time(2.0, 0.5, 2.0), ramp_time(1.0, 0.5, 2.0)
-    covered = rest * 1.0 + change * 1.5
-    best = 2 * (rest + change + (lead - covered) / 2.0) + bend / cap
-    assert best * (1 - 1e-6) <= fastest(path, limits).arrival <= best * 1.005
+
+    def whole(jerk):
+        # rest to 2 m/s, 2 to 1 m/s, bend at 1 m/s, 1 to 2 m/s, 2 m/s to rest
+        rest, change = ramp_time(2.0, 0.5, jerk), ramp_time(1.0, 0.5, jerk)
+        covered = rest * 1.0 + change * 1.5
+        return 2 * (rest + change + (lead - covered) / 2.0) + bend / cap
+
+    assert whole(1e9) <= fastest(path, limits).arrival <= whole(2.0) * (1 + 1e-5)

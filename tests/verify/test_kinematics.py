@@ -102,7 +102,7 @@ def test_creeping_backwards_from_knot_to_knot_is_refused(build):
     """Each phase rolls back by less than the margin, all of them together by ten times as much."""
     robot = build.robot("a", (0, 0), (5, 0))
     profile, n = robot["profile"], 20
-    for k in range(n):
+    for k in [*range(n), *range(n, 0, -1)]:
         profile["states"].insert(-1, [5.0 - 5e-10 * k, 0.0, 0.0])
         profile["times"].append(profile["times"][-1] + 1.0)
         profile["jerks"].append(0.0)

@@ -66,6 +66,8 @@ def test_an_arc_bulges_between_its_ends(build):
     for gap, verdict in ((0.0, "certified"), (1e-3, "refused"), (1e-7, "refused")):
         block = build.rectangle("block", -0.2, top + R - gap, 0.2, top + 1)
         assert check(build, robot, block).verdict == verdict
+        far = build.rectangle("far", -45, -45, 45, -40)  # makes the cells of the coarse search longer than the arc
+        assert check(build, robot, block, far).verdict == verdict
 
 
 def test_a_clothoid_is_followed_exactly(build):
@@ -155,9 +157,13 @@ def test_the_edge_of_the_workspace(build, turn):
         bounds = [-9.0, -9.0, 9.0, 9.0]
         bounds[turn] = -reach if turn < 2 else reach
         angle = (math.pi, -math.pi / 2, 0.0, math.pi / 2)[turn]  # where the circle is nearest to that side
-        start = [math.cos(angle - 1), math.sin(angle - 1)]
+        begin = angle - 0.4  # so that the nearest place is at no simple share of the arc
         robot = build.robot(
-            "a", start, pieces=[[2.0, 1, 1]], turned=angle - 1 + math.pi / 2, limits={"lateral_acceleration": 9.0}
+            "a",
+            (math.cos(begin), math.sin(begin)),
+            pieces=[[1.0, 1, 1]],
+            turned=begin + math.pi / 2,
+            limits={"lateral_acceleration": 9.0},
         )
         report = check(build, robot, bounds=bounds)
         assert report.verdict == verdict

@@ -200,6 +200,13 @@ def test_turning_and_mirroring_the_world_changes_nothing(build):
     assert values[2][2] == pytest.approx(values[0][2], abs=1e-6)
 
 
+def test_every_pair_that_rests_too_near_is_reported(build):
+    """Not only the nearest one, which is found first."""
+    places = [(0, 0), (0.61, 0), (9, 0), (9.62, 0), (18, 0), (18.65, 0)]
+    report = check(build, *[build.robot(f"r{k}", place, place) for k, place in enumerate(places)])
+    assert [fault.robots for fault in report.faults] == [("r0", "r1"), ("r2", "r3")]
+
+
 def test_there_are_twenty_findings_at_most(build):
     """Fifty robots on one spot are a collision or two; the checker does not count them all."""
     report = check(build, *[build.robot(f"r{k}", (0, 0), (k + 1, 0)) for k in range(50)])
