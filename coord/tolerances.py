@@ -24,6 +24,16 @@ LIMIT_MARGIN: Final = 1e-7
 #: [m] A coordinate beyond this is refused: doubles no longer resolve the tolerances above.
 LARGEST_COORDINATE: Final = 1e6
 
+#: [m] A smaller robot is a slip of the pen: bends of its size would need stops.
+SMALLEST_RADIUS: Final = 1e-3
+
+#: [m/s, m/s2, m/s3] Limits beyond these are slips of the pen, and lose the digits that the checks need.
+SMALLEST_LIMIT: Final = 1e-4
+LARGEST_LIMIT: Final = 1e4
+
+#: [s] A later release is refused: doubles resolve 1e-11 s there, which the check of jerks needs.
+LATEST_RELEASE: Final = 1e5
+
 #: [1] An arrival this close to its bound, relatively, counts as optimal.
 OPTIMAL: Final = 1e-4
 

@@ -12,6 +12,9 @@ from coord.model.arrays import Array
 #: [m] Contact is no hit: a tangent touches the disc it leaves.
 _TOUCH = 1e-9
 
+#: [1] A cosine above 1 by less than this is a contact.
+_GRAZE = 1e-9
+
 #: [rad] Blocked stretches of a circle shorter than this come from rounding at a contact.
 _SLIVER = 1e-7
 
@@ -81,7 +84,7 @@ def _segment_angles(center: Array, radius: float, edges: Array, rho: Array) -> A
         gap = end - center
         far = np.hypot(gap[:, 0], gap[:, 1])
         with np.errstate(divide="ignore", invalid="ignore"):
-            opening = np.arccos((far**2 + radius**2 - rho**2) / (2 * far * radius))
+            opening = _arccos((far**2 + radius**2 - rho**2) / (2 * far * radius))
         toward = np.arctan2(gap[:, 1], gap[:, 0])
         found += [toward - opening, toward + opening]
     along = edges[:, 2:] - edges[:, :2]
@@ -92,9 +95,14 @@ def _segment_angles(center: Array, radius: float, edges: Array, rho: Array) -> A
         offset = ((center - edges[:, :2]) * normal).sum(axis=1)
         toward = np.arctan2(normal[:, 1], normal[:, 0])
         for line in (rho - offset, -rho - offset):
-            opening = np.arccos(line / radius)
+            opening = _arccos(line / radius)
             found += [toward - opening, toward + opening]
     return np.concatenate(found)
+
+
+def _arccos(cosine: Array) -> Array:
+    """Arc cosine; at contact rounding may leave the cosine a hair above 1, and the contact must not be lost."""
+    return np.asarray(np.arccos(np.where(np.abs(cosine) < 1 + _GRAZE, np.clip(cosine, -1.0, 1.0), np.nan)))
 
 
 def _box_angles(center: Array, radius: float, box: tuple[float, float, float, float]) -> Array:

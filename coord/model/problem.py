@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from coord.errors import InvalidValueError
 from coord.model.obstacle import Obstacle
 from coord.model.robot import Robot
+from coord.model.rules import range_fault
 from coord.tolerances import LARGEST_COORDINATE
 
 
@@ -37,8 +38,8 @@ class Workspace:
         elif max(abs(value) for value in self.bounds) > LARGEST_COORDINATE:
             text = f"coordinates must stay within {LARGEST_COORDINATE:g} m (got {list(self.bounds)})"
             faults.append(("bounds", text + "; move the origin nearer"))
-        if not (math.isfinite(self.clearance) and self.clearance >= 0):
-            faults.append(("clearance", f"clearance must be >= 0 m (got {self.clearance:g})"))
+        if fault := range_fault("clearance", self.clearance, " m", 0.0, LARGEST_COORDINATE):
+            faults.append(("clearance", fault))
         if self.after_arrival not in ("stay", "leave"):
             faults.append(("after_arrival", f'after_arrival must be "stay" or "leave" (got "{self.after_arrival}")'))
         if faults:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from coord.errors import InvalidValueError
 from coord.model.arrays import Point
+from coord.model.rules import range_fault
+from coord.tolerances import LARGEST_COORDINATE, LARGEST_LIMIT, LATEST_RELEASE, SMALLEST_LIMIT, SMALLEST_RADIUS
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,14 +18,15 @@ class Footprint:
     Raises
     ------
     InvalidValueError
-        When the radius [m] is not a positive finite number.
+        When the radius [m] is not positive, or larger than any floor.
     """
 
     radius: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.radius) and self.radius > 0):
-            raise InvalidValueError([("footprint", f"the disc's radius must be > 0 m (got {self.radius:g})")])
+        fault = range_fault("the disc's radius", self.radius, " m", SMALLEST_RADIUS, LARGEST_COORDINATE)
+        if fault:
+            raise InvalidValueError([("footprint", fault)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,11 +47,11 @@ class Limits:
 
     def __post_init__(self) -> None:
         units = {"speed": "m/s", "jerk": "m/s3"}
-        faults = [
-            (name, f"{name} must be > 0 {units.get(name, 'm/s2')} (got {value:g})")
-            for name in self.__slots__
-            if not (math.isfinite(value := getattr(self, name)) and value > 0)
-        ]
+        faults = []
+        for name in self.__slots__:
+            unit = " " + units.get(name, "m/s2")
+            if fault := range_fault(name, getattr(self, name), unit, SMALLEST_LIMIT, LARGEST_LIMIT):
+                faults.append((name, fault))
         if faults:
             raise InvalidValueError(faults)
 
@@ -83,9 +86,9 @@ class Robot:
                 faults.append((field, f"{field} must be two finite numbers [m] (got {getattr(self, field)})"))
         if self.priority is not None and not math.isfinite(self.priority):
             faults.append(("priority", f"priority must be a finite number (got {self.priority})"))
-        if not (math.isfinite(self.release) and self.release >= 0):
-            faults.append(("release", f"release must be >= 0 s (got {self.release:g})"))
-        if not (math.isfinite(self.weight) and self.weight >= 0):
-            faults.append(("weight", f"weight must be >= 0 (got {self.weight:g})"))
+        if fault := range_fault("release", self.release, " s", 0.0, LATEST_RELEASE):
+            faults.append(("release", fault))
+        if fault := range_fault("weight", self.weight, "", 0.0, LARGEST_COORDINATE):
+            faults.append(("weight", fault))
         if faults:
             raise InvalidValueError(faults)

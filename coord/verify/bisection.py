@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from heapq import heappop, heappush
 from typing import NamedTuple
 
 from coord.verify.tolerances import HALVINGS, HALVINGS_REFUSED, RESOLUTION
@@ -33,10 +35,10 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
     best = max(best, need)  # what others do must not excuse this one from its own proof
     at: float | None = None
     cut = max(need, best - RESOLUTION)
-    stack = [(lo, hi)]
+    heap = [(-math.inf, lo, hi)]  # the least promising stretch first: that finds the least value soonest
     halvings = 0
-    while stack:
-        a, b = stack.pop()
+    while heap and heap[0][0] < cut:
+        _, a, b = heappop(heap)
         lower, value, where = bound(a, b)
         if value < best:
             best, at = value, where
@@ -51,8 +53,9 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
             if best >= need and not lower >= need:
                 return Least(best, at, a)
             continue
-        stack.append((middle, b))
-        stack.append((a, middle))
+        key = lower if lower > -math.inf else -math.inf  # what is no number is the worst there is
+        heappush(heap, (key, a, middle))
+        heappush(heap, (key, middle, b))
     return Least(best, at)
 
 
