@@ -13,6 +13,6 @@ def range_fault(what: str, value: float, unit: str, least: float, most: float) -
     got = f"(got {value:g})"
     if value > most:
         return f"{what} must be at most {most:g}{unit} {got}"
-    if least > 0 and 0 < value:
+    if least > 0 and value > 0:
         return f"{what} must be at least {least:g}{unit} {got}"
     return f"{what} must be {'>' if least > 0 else '>='} 0{unit} {got}"

@@ -22,6 +22,9 @@ SHORTEST_PHASE = 1e-10
 #: that miss it by 1e-8, which the checker would refuse.
 END_SLACK = 1e-10
 
+#: What ruckig raises when it finds nothing; above 7,600 s its code has no name in Python, a ValueError.
+_FAILURES = (ruckig.RuckigError, ValueError)
+
 
 def motion(start: State, goal: State, limits: Limits, duration: float | None = None) -> VelocityProfile | None:
     """The quickest motion from one state to another, or the one that takes exactly ``duration`` [s].
@@ -38,7 +41,7 @@ def motion(start: State, goal: State, limits: Limits, duration: float | None = N
             if not request.validate(True, True):
                 return None
             outcome = ruckig.Ruckig(1).calculate(request, trajectory)
-        except ruckig.RuckigError:
+        except _FAILURES:
             continue
         if outcome != ruckig.Result.Working:
             continue
@@ -76,7 +79,7 @@ class LinkTimes:
             if not request.validate(True, True):
                 return math.inf
             outcome = self._solver.calculate(request, self._trajectory)
-        except ruckig.RuckigError:
+        except _FAILURES:
             return math.inf
         found = self._trajectory.profiles[0][0]
         miss = max(abs(found.p[-1] - found.pf), abs(found.v[-1] - found.vf), abs(found.a[-1] - found.af))
