@@ -43,15 +43,15 @@ class Floor:
             return np.empty(0, dtype=np.intp)
         return np.sort(self._tree.query(shapely.box(*box)))
 
-    def blocked_angles(self, center: Array, radius: float, parts: npt.NDArray[np.intp]) -> Array:
-        """Open stretches (k, 2) [rad] of a circle that come too near to some of the parts or leave the box.
+    def blocked_angles(self, center: Array, radius: float, chosen: npt.NDArray[np.bool_]) -> Array:
+        """Open stretches (k, 2) [rad] of a circle that come too near to the chosen parts or leave the box.
 
         Each begins in [0, 2 pi) and may end beyond 2 pi. Exact: the circle meets the boundary of a segment
         grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
         it is wholly inside or wholly outside, which its middle tells.
         """
-        chosen = np.flatnonzero(np.isin(self.grown.edge_parts, parts))
-        edges, rho = self.grown.edges[chosen], self.rho[self.grown.edge_parts[chosen]]
+        of_chosen = chosen[self.grown.edge_parts]
+        edges, rho = self.grown.edges[of_chosen], self.rho[self.grown.edge_parts[of_chosen]]
         low, high = np.minimum(edges[:, :2], edges[:, 2:]), np.maximum(edges[:, :2], edges[:, 2:])
         reach = (rho + radius)[:, None]
         near = np.all((low - reach < center) & (center < high + reach), axis=1)

@@ -85,9 +85,11 @@ class _Search:
     """A* over tangents: a node is a corner with a side and the direction at which a tangent arrives."""
 
     def __init__(self, floor: Floor, active: npt.NDArray[np.intp], start: Point, goal: Point) -> None:
-        self.floor, self.active = floor, active
+        self.floor = floor
         corners = floor.grown.corners
-        chosen = np.flatnonzero(np.isin(corners.parts, active))
+        self.is_active = np.zeros(len(floor.rho), dtype=np.bool_)
+        self.is_active[active] = True
+        chosen = np.flatnonzero(self.is_active[corners.parts])
         self.places = np.repeat(corners.places[chosen], 2, axis=0)
         self.radius = np.repeat(floor.rho[corners.parts[chosen]], 2)
         self.side = np.tile([1.0, -1.0], len(chosen))
@@ -182,14 +184,14 @@ class _Search:
 
     def _is_hit(self, segment: tuple[float, float, float, float]) -> bool:
         hits = self.floor.hit_parts(np.array([segment]))
-        return bool(np.isin(hits[:, 1], self.active).any())
+        return bool(self.is_active[hits[:, 1]].any())
 
     def _free_turn(self, corner: int, arriving: float) -> float:
         """How far [rad] one can turn round a corner from a direction on until something is in the way."""
         single = corner // 2  # both sides share a circle
         if single not in self.blocked:
             center, radius = self.places[corner], float(self.radius[corner])
-            self.blocked[single] = self.floor.blocked_angles(center, radius, self.active)
+            self.blocked[single] = self.floor.blocked_angles(center, radius, self.is_active)
         side = float(self.side[corner])
         free = _TURN - 1e-9
         for first, last in self.blocked[single].tolist():
@@ -240,7 +242,8 @@ def _hits(floor: Floor, found: Skeleton) -> set[int]:
         center = np.array(turn.center)
         near = floor.near_parts((*(center - turn.radius).tolist(), *(center + turn.radius).tolist()))
         for part in near.tolist():
-            stretches = floor.blocked_angles(center, turn.radius, np.array([part]))
+            only = np.arange(len(floor.rho)) == part
+            stretches = floor.blocked_angles(center, turn.radius, only)
             if part not in hits and any(_overlap(turn, first, last) for first, last in stretches.tolist()):
                 hits.add(part)
     return hits

@@ -7,7 +7,7 @@ error of them; footprints that turn in bends by support functions.
 from __future__ import annotations
 
 from coord.verify.arcs import arc_between, to_ring
-from coord.verify.bisection import Bound, Least, descend, joined
+from coord.verify.bisection import Bound, Least, descend, joined, still_needed
 from coord.verify.curve import Curve, Piece, Pose, curvature, heading, index_at, point
 from coord.verify.shapes import Body, Point, Ring, gap, minkowski, mirrored, support, turned
 from coord.verify.support import bend
@@ -34,8 +34,8 @@ def approach(path: Curve, body: Body, span: tuple[float, float], still: Ring, ra
     for piece in path.pieces[index_at(path, lo) :]:
         if piece.begin >= hi and piece.begin > lo:
             break
-        found = _along(piece, body, (max(lo, piece.begin), min(hi, piece.end)), still, radius, (need, least.value))
-        least = joined(least, found)
+        span = max(lo, piece.begin), min(hi, piece.end)
+        least = joined(least, _along(piece, body, span, still, radius, (still_needed(need, least), least.value)))
     return least
 
 
@@ -136,7 +136,8 @@ def inside_edge(path: Curve, body: Body, n: tuple[float, float], level: float, n
         elif level - n[0] * piece.x - n[1] * piece.y - body.reach - piece.length >= need:
             continue
         else:
-            found = descend(_to_edge(piece, body, n, level), piece.begin, piece.end, need, least.value)
+            bound = _to_edge(piece, body, n, level)
+            found = descend(bound, piece.begin, piece.end, still_needed(need, least), least.value)
         least = joined(least, found)
     return least
 

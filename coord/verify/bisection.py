@@ -61,5 +61,10 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
 
 def joined(one: Least, then: Least) -> Least:
     """Two searches as one, where the second began with the value the first had found."""
-    better = one if then.at is None else then
+    better = one if then.at is None or one.value <= then.value else then
     return Least(better.value, better.at, then.open if one.open is None else one.open)
+
+
+def still_needed(need: float, least: Least) -> float:
+    """What the next search has to prove: nothing more, once a value below what is needed was found."""
+    return -math.inf if least.at is not None and least.value < need else need

@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass
 
-from coord.verify.bisection import Bound, Least, descend, joined
+from coord.verify.bisection import Bound, Least, descend, joined, still_needed
 from coord.verify.curve import Piece, curvature, heading, point
 from coord.verify.motion import Motion, Stretch, acceleration, arc_length, speed
 from coord.verify.shapes import Body, Ring, gap, minkowski, mirrored, support, turned
@@ -50,10 +50,11 @@ def meeting(first: Mover, second: Mover, t0: float, t1: float, need: float, best
             least = Least(after - reach, end, least.open)
         # no point of the plane is nearer to the ends of a way than half of what the way is too short by
         way = arc_length(a, end) - arc_length(a, t) + arc_length(b, end) - arc_length(b, t)
-        cut = max(need, least.value - RESOLUTION)
+        required = still_needed(need, least)
+        cut = max(required, least.value - RESOLUTION)
         if not (before + after - way) / 2 - reach >= cut + _BACKWARDS:
             legs = _Leg(first.body, a, one.path.pieces[a.piece]), _Leg(second.body, b, two.path.pieces[b.piece])
-            least = joined(least, _together(*legs, t, end, need, least.value))
+            least = joined(least, _together(*legs, t, end, required, least.value))
         t, before = end, after
         k, m = k + (a.end <= end), m + (b.end <= end)
     return least

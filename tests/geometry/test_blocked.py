@@ -58,7 +58,7 @@ def test_blocked_angles_are_those_at_which_the_circle_is_too_near(floor, center,
 
     Deep inside a part nothing need be blocked: nobody gets there without crossing its outline.
     """
-    stretches = floor.blocked_angles(np.array(center), radius, np.arange(len(floor.rho)))
+    stretches = floor.blocked_angles(np.array(center), radius, np.ones(len(floor.rho), dtype=bool))
     angles = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
     at = np.array(center) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     xmin, ymin, xmax, ymax = floor.grown.box
@@ -88,7 +88,7 @@ def test_a_circle_round_its_own_corner_is_blocked_where_the_edges_begin():
         grown = grow([rectangle("s", (4.0, 4.0, 8.0, 8.0), angle)], reach, BOUNDS)
         floor = Floor(grown, grown.rho)
         for place, first, span in zip(grown.corners.places, grown.corners.first, grown.corners.span, strict=True):
-            stretches = floor.blocked_angles(place, reach, np.array([0]))
+            stretches = floor.blocked_angles(place, reach, np.arange(len(floor.rho)) == 0)
             for share, is_free in ((1e-5, True), (0.5, True), (1 - 1e-5, True), (-1e-5, False), (1 + 1e-5, False), (1.7, False)):
                 inside = (first + share * span - stretches[:, 0]) % (2 * np.pi) < stretches[:, 1] - stretches[:, 0]
                 assert is_free != inside.any()

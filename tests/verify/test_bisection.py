@@ -7,7 +7,7 @@ import math
 import pytest
 
 from coord.verify import bisection, verify
-from coord.verify.bisection import Least, descend, joined
+from coord.verify.bisection import Least, descend, joined, still_needed
 
 
 def parabola(least):
@@ -60,6 +60,14 @@ def test_joined_searches_keep_the_better_place_and_the_first_open_one():
     """The second one began with the value of the first."""
     assert joined(Least(1.0, 4.0), Least(1.0, None, 6.0)) == Least(1.0, 4.0, 6.0)
     assert joined(Least(1.0, 4.0, 5.0), Least(0.5, 7.0, 6.0)) == Least(0.5, 7.0, 5.0)
+    assert joined(Least(-1.0, 4.0), Least(-0.5, 7.0)) == Least(-1.0, 4.0)
+
+
+def test_after_a_failure_only_worse_places_are_of_interest():
+    """Until then, and after finds that do not matter, everything is still to be proved."""
+    assert still_needed(0.05, Least(0.05, None)) == 0.05
+    assert still_needed(0.05, Least(0.06, 3.0)) == 0.05
+    assert still_needed(0.05, Least(0.04, 3.0)) == -math.inf
 
 
 def test_what_is_left_open_is_not_certified(build, monkeypatch):

@@ -94,6 +94,16 @@ def test_a_collision_names_robots_place_time_and_distance(build):
     assert report.min_clearance.value == 0.0
 
 
+def test_the_worst_of_a_collision_is_reported_although_it_lasts(build):
+    """Phase after phase two robots overlap; distance and time are those of the deepest place."""
+    robots = [build.robot(name, start, goal) for name, start, goal in (("a", (0, 0), (0, -1)), ("b", (0, -1), (2, 1)))]
+    far = build.robot("c", (9, 9), (9.64, 9))  # too near as well, so that a lower value is known before
+    report = check(build, *robots, far, build.robot("d", (9, 9), (9, 9)), clearance=0.1)
+    fault = next(fault for fault in report.faults if fault.robots == ("a", "b"))
+    assert fault.time == pytest.approx(1.66, abs=0.01)
+    assert "overlap by 0.2084" in fault.text
+
+
 def test_swapped_profiles_are_refused(build):
     """Robots cross one after the other; with their profiles exchanged they meet."""
     first, second = build.robot("a", (0, 0), (10, 0)), build.robot("b", (5, -5), (5, 5), departure=3.0)
