@@ -72,7 +72,8 @@ def plan_in_order(scene: Scene, order: Sequence[int], done: Callable[[int], None
     timings: dict[int, Timing] = {}
     for i in order:
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
-        timing = time_robot(scene.egos[i], meetings)
+        is_last = all(k in timings for k in scene.neighbours[i])
+        timing = time_robot(scene.egos[i], meetings, is_last=is_last)
         if timing is None:
             ego = scene.egos[i]
             late = ego.alone.shifted(max(timings[k].profile.arrival for k in timings))
