@@ -11,13 +11,14 @@ from coord.model.result import BlockingArc, Diagnosis
 def cycle(arcs: Sequence[BlockingArc]) -> Diagnosis:
     """Robots that all wait for each other."""
     names = tuple(dict.fromkeys(arc.first for arc in arcs))
-    reasons = "; ".join(_reason(arc) for arc in arcs)
-    who = " and ".join(f'"{name}"' for name in names) if len(names) < 3 else ", ".join(f'"{name}"' for name in names)
+    quoted = [f'"{name}"' for name in names]
+    who = f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+    way = "stand in each other's way" if len(names) == 2 else "stand in each other's way, in a ring"
     text = (
-        f"{who} block each other on their paths, so that none can go first: {reasons}. "
-        "With these paths no order lets all of them arrive one after the other."
+        f"{who} {way}: {', and '.join(_reason(arc) for arc in arcs)}. "
+        "Each would have to go before the other, so on these paths no order lets all of them arrive one after the other."
     )
-    remedy = f"Move the start or goal of one of them off the others' paths, for example that at {_at(arcs[0].place)}."
+    remedy = "Move one of these starts or goals out of the other's way, or make room for a way round it."
     return Diagnosis("blocking-cycle", names, text, arcs[0].place, None, remedy)
 
 
@@ -36,8 +37,8 @@ def time_is_up(limit: float, planned: int, total: int) -> Diagnosis:
 
 def _reason(arc: BlockingArc) -> str:
     if arc.at == "start":
-        return f'"{arc.first}" stands at {_at(arc.place)} in the way of "{arc.then}" and would have to leave first'
-    return f'"{arc.then}" would park at {_at(arc.place)} in the way of "{arc.first}", which would have to pass first'
+        return f'"{arc.first}" must leave its start {_at(arc.place)} before "{arc.then}" can pass there'
+    return f'"{arc.first}" must have passed {_at(arc.place)} before "{arc.then}" parks there, at its goal'
 
 
 def _at(place: Point | None) -> str:

@@ -46,15 +46,14 @@ def shortest_paths(problem: Problem, done: Callable[[int], None]) -> list[Path]:
 def _no_way(problem: Problem, robot: Robot, reach: float) -> Diagnosis:
     which, names, gap = enclosing(problem.obstacles, problem.workspace.bounds, reach, robot.start, robot.goal)
     place = robot.goal if which == "goal" else robot.start
-    if len(names) > 5:
-        names = [*names[:5], "and others"]
-    wall = ", ".join(f'"{name}"' if name != "and others" else name for name in names) or "the edge of the workspace"
+    shown = [f'"{name}"' for name in names[:5]] + (["others"] if len(names) > 5 else [])
+    wall = " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown) or "the edge of the workspace"
     text = (
         f'"{robot.name}" has no way from ({robot.start[0]:.2f}, {robot.start[1]:.2f}) to '
-        f"({robot.goal[0]:.2f}, {robot.goal[1]:.2f}): its {which} is shut in by {wall} "
-        f"for a disc of radius {robot.footprint.radius:g} m that keeps {problem.workspace.clearance:g} m clearance."
+        f"({robot.goal[0]:.2f}, {robot.goal[1]:.2f}): its {which} is shut in by {wall}."
     )
-    remedy = f"Open a passage wider than {2 * reach:g} m, or move its {which}."
-    if gap is not None:
-        remedy = f"The widest passage lets a reach of {gap:.3f} m through, and it needs {reach:g} m. " + remedy
+    radius, clearance = robot.footprint.radius, problem.workspace.clearance
+    needs = f"it needs {2 * reach:.2f} m ({2 * radius:g} m wide, {clearance:g} m clearance on either side)"
+    remedy = f"There is no gap at all; {needs}." if gap is None else f"The widest gap is {2 * gap:.2f} m; {needs}."
+    remedy += f" Widen a passage, or move its {which}."
     return Diagnosis("no-way", (robot.name,), text, place, None, remedy)
