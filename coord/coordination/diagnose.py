@@ -16,7 +16,7 @@ def cycle(arcs: Sequence[BlockingArc]) -> Diagnosis:
     way = "stand in each other's way" if len(names) == 2 else "stand in each other's way, in a ring"
     text = (
         f"{who} {way}: {', and '.join(_reason(arc) for arc in arcs)}. "
-        "Each would have to go before the other, so on these paths no order lets all of them arrive one after the other."
+        "Each would have to go before the other: on these paths no order brings all of them home one after the other."
     )
     remedy = "Move one of these starts or goals out of the other's way, or make room for a way round it."
     return Diagnosis("blocking-cycle", names, text, arcs[0].place, None, remedy)

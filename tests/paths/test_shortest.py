@@ -74,5 +74,5 @@ def test_a_door_too_narrow_is_measured():
     (diagnosis,) = caught.value.diagnoses
     assert '"low"' in diagnosis.text
     assert '"high"' in diagnosis.text
-    assert "0.300 m" in diagnosis.remedy
-    assert "0.7 m" in diagnosis.remedy
+    assert "0.60 m" in diagnosis.remedy
+    assert "0.70 m" in diagnosis.remedy
