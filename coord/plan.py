@@ -55,7 +55,7 @@ def _planned(problem: Problem, options: Options, progress: Progress) -> Plan:
     """The stages in order: paths, alone, conflicts, order, timing."""
     robots, clearance = problem.robots, problem.workspace.clearance
     names = [robot.name for robot in robots]
-    paths = shortest_paths(problem, lambda done: progress("paths", done, len(robots)))
+    paths = shortest_paths(problem, lambda done: progress("paths", done, len(robots)), options.shape)
     egos = []
     for robot, path in zip(robots, paths, strict=True):
         egos.append(ego(robot, path))

@@ -12,9 +12,6 @@ from coord.model.arrays import Array, frozen
 from coord.model.path import Path
 from coord.model.robot import Limits
 
-#: A clothoid is cut where the cap has changed by this factor; within a cut the lowest cap holds.
-_CAP_RATIO = 1.05
-
 #: A clothoid is cut into at most this many sections.
 _MOST_CUTS = 24
 
@@ -47,13 +44,16 @@ class SpeedLimit:
         return np.array([self.caps[i : k + 1].min() for i, k in zip(first, np.maximum(final, first), strict=True)])
 
 
-def speed_limit(path: Path, limits: Limits) -> SpeedLimit:
-    """The caps that the lateral acceleration sets along a path."""
+def speed_limit(path: Path, limits: Limits, cap_ratio: float = 1.2) -> SpeedLimit:
+    """The caps that the lateral acceleration sets along a path.
+
+    A clothoid is cut where its cap has changed by the factor ``cap_ratio``; within a cut the lowest cap holds.
+    """
     ends: list[float] = []
     caps: list[float] = []
     position = 0.0
     for length, k0, k1 in path.pieces.tolist():
-        for cut, cap in _cuts(length, k0, k1, limits):
+        for cut, cap in _cuts(length, k0, k1, limits, cap_ratio):
             if caps and caps[-1] == cap:
                 ends[-1] = position + cut
             else:
@@ -72,14 +72,14 @@ def cap(curvature: float, limits: Limits) -> float:
     return math.sqrt(limits.lateral_acceleration / abs(curvature))
 
 
-def _cuts(length: float, k0: float, k1: float, limits: Limits) -> list[tuple[float, float]]:
+def _cuts(length: float, k0: float, k1: float, limits: Limits, cap_ratio: float) -> list[tuple[float, float]]:
     """Ends within the piece and caps of its cuts."""
     low, high = sorted((cap(k0, limits), cap(k1, limits)))
     if k0 * k1 < 0:
         high = limits.speed
     if high <= low * (1 + 1e-12):
         return [(length, low)]
-    count = min(_MOST_CUTS, math.ceil(math.log(high / low) / math.log(_CAP_RATIO)) + 1)
+    count = min(_MOST_CUTS, math.ceil(math.log(high / low) / math.log(cap_ratio)) + 1)
     edges = [k / count for k in range(count + 1)]
     return [
         (length * after, cap(max(abs(k0 + (k1 - k0) * before), abs(k0 + (k1 - k0) * after)), limits))

@@ -37,6 +37,18 @@ class Floor:
         near = shapely.dwithin(self.grown.parts[part], lines[line], np.maximum(self.rho[part] - _TOUCH, 0.0))
         return np.stack([line[near], part[near]], axis=1)
 
+    def is_hit(self, segments: Array, errors: Array) -> npt.NDArray[np.bool_]:
+        """Whether segments (n, 4), each widened by its error (n,) [m], come too near to any part."""
+        hit = np.zeros(len(segments), dtype=np.bool_)
+        if len(segments) and len(self.grown.parts):
+            lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+            low, high = np.minimum(segments[:, :2], segments[:, 2:]), np.maximum(segments[:, :2], segments[:, 2:])
+            boxes = shapely.box(*(low - errors[:, None]).T, *(high + errors[:, None]).T)
+            line, part = self._tree.query(boxes, predicate="intersects")
+            far = np.maximum(self.rho[part] + errors[line] - _TOUCH, 0.0)
+            np.logical_or.at(hit, line, shapely.dwithin(self.grown.parts[part], lines[line], far))
+        return hit
+
     def near_parts(self, box: tuple[float, float, float, float]) -> npt.NDArray[np.intp]:
         """Parts whose grown boxes meet a box, ascending."""
         if not len(self.grown.parts):

@@ -54,6 +54,11 @@ def distances(geometry: Geometry, points: Array) -> Array:
     return np.asarray(shapely.distance(geometry, shapely.points(points)), dtype=np.float64)
 
 
+def part_distances(shapes: Geometry, points: Array) -> Array:
+    """Least distances (m,) [m] of many shapes (m,) from any of the points (n, 2)."""
+    return np.asarray(shapely.distance(shapes, shapely.multipoints(points)), dtype=np.float64)
+
+
 def depths(geometry: Geometry, points: Array) -> Array:
     """How deep (n,) [m] points (n, 2) lie in a shape: their distance to its boundary, 0 for points outside."""
     places = shapely.points(points)

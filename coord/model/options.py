@@ -9,7 +9,7 @@ from coord.errors import InvalidValueError
 
 _CHOICES = {
     "method": ("velocity",),
-    "shape": ("taut",),
+    "shape": ("fitted", "taut"),
     "order": ("priority",),
     "profile": ("fastest",),
 }
@@ -17,7 +17,7 @@ _CHOICES = {
 #: Values that the contract names and later work brings.
 _LATER = {
     "method": ("stop", "nearest"),
-    "shape": ("fitted", "exponential", "follow"),
+    "shape": ("exponential", "follow"),
     "order": ("longest", "shortest", "heading", "random", "search"),
     "profile": ("gentle",),
 }
@@ -30,7 +30,7 @@ class Options:
     Parameters
     ----------
     method : "velocity": by priority, the later robot changes its velocity.
-    shape : "taut": the shortest way of arcs and tangents.
+    shape : "fitted": every turn as wide as pays in time; "taut": the shortest way of arcs and tangents.
     order : "priority": the user's priorities, else the longest alone first.
     profile : "fastest": each robot arrives as early as it can.
     time_limit : wall time [s] after which the search ends; None for no limit.
@@ -39,7 +39,7 @@ class Options:
     """
 
     method: str = "velocity"
-    shape: str = "taut"
+    shape: str = "fitted"
     order: str = "priority"
     profile: str = "fastest"
     time_limit: float | None = None

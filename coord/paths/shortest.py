@@ -11,12 +11,17 @@ from coord.model.path import Path, straight
 from coord.model.problem import Problem
 from coord.model.result import Diagnosis
 from coord.model.robot import Robot
-from coord.paths.skeleton import NoWay, skeleton
+from coord.paths.fitted import fitted
+from coord.paths.skeleton import NoWay, search_floor, skeleton
 from coord.paths.taut import taut
 
 
-def shortest_paths(problem: Problem, done: Callable[[int], None]) -> list[Path]:
+def shortest_paths(problem: Problem, done: Callable[[int], None], shape: str = "fitted") -> list[Path]:
     """The paths of all robots, in the order of the problem; ``done`` is called with the number found so far.
+
+    Parameters
+    ----------
+    shape : "fitted" (turns as wide as pays) or "taut" (the shortest way itself).
 
     Raises
     ------
@@ -32,11 +37,12 @@ def shortest_paths(problem: Problem, done: Callable[[int], None]) -> list[Path]:
         if robot.start == robot.goal:
             paths.append(straight(robot.start, robot.goal))
         else:
-            found = skeleton(floors[reach], robot.start, robot.goal)
+            floor = search_floor(floors[reach], robot.start, robot.goal)
+            found = skeleton(floor, robot.start, robot.goal)
             if isinstance(found, NoWay):
                 missing.append(_no_way(problem, robot, reach))
             else:
-                paths.append(taut(found))
+                paths.append(taut(found) if shape == "taut" else fitted(found, robot.limits, floor))
         done(len(paths))
     if missing:
         raise NoPlanError(missing)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from coord.geometry.blocked import Floor
 from coord.geometry.growth import Grown
-from coord.geometry.shapes import distances
+from coord.geometry.shapes import part_distances
 from coord.model.arrays import Array, Point
 from coord.tolerances import PLANNING_MARGIN
 
@@ -58,9 +58,8 @@ class NoWay:
     parts: tuple[int, ...]
 
 
-def skeleton(grown: Grown, start: Point, goal: Point) -> Skeleton | NoWay:
-    """The shortest path of a disc's centre from start to goal, both of which must keep the distance."""
-    floor = Floor(grown, _search_distance(grown, start, goal))
+def skeleton(floor: Floor, start: Point, goal: Point) -> Skeleton | NoWay:
+    """The shortest path of a disc's centre from start to goal, both of which must keep the floor's distances."""
     active: set[int] = set()
     while True:
         found = _Search(floor, np.array(sorted(active), dtype=np.intp), start, goal).run()
@@ -72,13 +71,13 @@ def skeleton(grown: Grown, start: Point, goal: Point) -> Skeleton | NoWay:
         active |= hits
 
 
-def _search_distance(grown: Grown, start: Point, goal: Point) -> Array:
-    """Rho with a margin for the certificate, but never so much that the start or goal would be too near."""
-    ends = np.array([start, goal])
-    rho = grown.rho + PLANNING_MARGIN
-    for k, part in enumerate(grown.parts):
-        rho[k] = min(rho[k], float(distances(part, ends).min()))
-    return rho
+def search_floor(grown: Grown, start: Point, goal: Point) -> Floor:
+    """The floor as a search sees it: with a margin for the certificate.
+
+    The margin is never so large that the start or the goal would be too near to something.
+    """
+    nearest = part_distances(grown.parts, np.array([start, goal]))
+    return Floor(grown, np.minimum(grown.rho + PLANNING_MARGIN, nearest))
 
 
 class _Search:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coord.alone.inverse import time_at
+from coord.model.arrays import frozen
 from coord.model.profile import VelocityProfile
-from coord.solvers.jerk import motion
+from coord.solvers.jerk import SHORTEST_PHASE, motion
 from coord.timing.delay import Contact
 from coord.timing.ego import Ego
 
@@ -94,7 +95,7 @@ def _arc(
     ego: Ego, current: VelocityProfile, target: VelocityProfile, begin: float, end: float
 ) -> VelocityProfile | None:
     """Follow one profile up to ``begin`` and the other from ``end`` on, with a ruckig arc in between."""
-    if end <= begin:
+    if end <= begin or begin >= current.arrival:
         return None
     start, goal = current.state(begin)[0], target.state(end)[0]
     if goal[0] < start[0]:
@@ -112,15 +113,20 @@ def _arc(
 
 def _join(head: VelocityProfile, arc: VelocityProfile, tail: VelocityProfile) -> VelocityProfile:
     """The head up to the arc's beginning, the arc, then the tail from the arc's end on."""
-    first, last = arc.departure, arc.arrival
-    before = head.times < first - 1e-9
-    behind = tail.times > last + 1e-9
-    if not len(arc.jerks):
-        return head
-    head_jerks = head.jerks[: max(int(before.sum()), 0)] if first > head.departure else head.jerks[:0]
-    tail_start = len(tail.times) - int(behind.sum())
-    tail_jerks = tail.jerks[max(tail_start - 1, 0) :] if behind.any() else tail.jerks[:0]
-    keep_head = before if first > head.departure else np.zeros_like(before)
-    times = np.concatenate([head.times[keep_head], arc.times, tail.times[behind]])
-    states = np.concatenate([head.states[keep_head], arc.states, tail.states[behind]])
-    return VelocityProfile(times, states, np.concatenate([head_jerks[: int(keep_head.sum())], arc.jerks, tail_jerks]))
+    before = _between(head, head.departure, arc.departure)
+    behind = _between(tail, arc.arrival, tail.arrival)
+    return VelocityProfile(
+        np.concatenate([before.times[:-1], arc.times, behind.times[1:]]),
+        np.concatenate([before.states[:-1], arc.states, behind.states[1:]]),
+        np.concatenate([before.jerks, arc.jerks, behind.jerks]),
+    )
+
+
+def _between(profile: VelocityProfile, start: float, end: float) -> VelocityProfile:
+    """The part of a profile between two times, which become knots; a single knot where nothing lies between."""
+    if end - start <= SHORTEST_PHASE:
+        return VelocityProfile(frozen([start]), profile.state([start]), frozen([]))
+    inside = profile.times[(profile.times > start + SHORTEST_PHASE) & (profile.times < end - SHORTEST_PHASE)]
+    times = np.concatenate([[start], inside, [end]])
+    phase = np.searchsorted(profile.times, (times[:-1] + times[1:]) / 2, side="right") - 1
+    return VelocityProfile(times, profile.state(times), profile.jerks[phase])

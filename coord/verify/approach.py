@@ -7,11 +7,10 @@ error of them; footprints that turn in bends by support functions.
 from __future__ import annotations
 
 from coord.verify.arcs import arc_between, to_ring
-from coord.verify.bisection import Bound, Least, descend, joined, still_needed
+from coord.verify.bisection import Bound, Least, descend, joined, worth
 from coord.verify.curve import Curve, Piece, Pose, curvature, heading, index_at, point
 from coord.verify.shapes import Body, Point, Ring, gap, minkowski, mirrored, support, turned
 from coord.verify.support import bend
-from coord.verify.tolerances import RESOLUTION
 
 #: [m] Below this distance from a polygon, exact formulas no longer tell touching from entering.
 _TOUCH = 1e-7
@@ -29,13 +28,13 @@ def approach(path: Curve, body: Body, span: tuple[float, float], still: Ring, ra
     lo, hi = span
     need, best = goal
     if not path.pieces:
-        return _noted(resting(body, path.start, still, radius), 0.0, need, best)
+        return _noted(resting(body, path.start, still, radius), 0.0, best)
     least = Least(best, None)
     for piece in path.pieces[index_at(path, lo) :]:
         if piece.begin >= hi and piece.begin > lo:
             break
         span = max(lo, piece.begin), min(hi, piece.end)
-        least = joined(least, _along(piece, body, span, still, radius, (still_needed(need, least), least.value)))
+        least = joined(least, _along(piece, body, span, still, radius, (need, least.value)))
     return least
 
 
@@ -45,8 +44,8 @@ def resting(body: Body, pose: Pose, still: Ring, radius: float) -> float:
     return gap(pose[:2], ring)[0] - radius - body.radius
 
 
-def _noted(value: float, at: float, need: float, best: float) -> Least:
-    return Least(value, at) if value < max(need, best) else Least(best, None)
+def _noted(value: float, at: float, best: float) -> Least:
+    return Least(value, at) if value < best else Least(best, None)
 
 
 def _along(
@@ -57,7 +56,7 @@ def _along(
     lo, hi = span
     if len(body.ring) > 1:  # mostly the disc round the footprint is clear already
         arc = arc_between(piece, lo, hi)
-        if _outside(piece, lo, still) and to_ring(arc, still)[0] - arc.error - radius - body.reach >= _cut(need, best):
+        if _outside(piece, lo, still) and to_ring(arc, still)[0] - arc.error - radius - body.reach >= worth(need, best):
             return Least(best, None)
     if body.turning and not piece.straight:
         return descend(_swept(piece, body, still, radius), lo, hi, need, best)
@@ -66,12 +65,8 @@ def _along(
         return descend(_clothoid(piece, body, ring, still, radius), lo, hi, need, best)
     distance, u = to_ring(arc_between(piece, lo, hi), ring)
     if len(ring) < 3 or (distance > _TOUCH and _outside(piece, lo, ring)):
-        return _noted(distance - radius - body.radius, lo + u, need, best)
+        return _noted(distance - radius - body.radius, lo + u, best)
     return descend(_swept(piece, body, still, radius), lo, hi, need, best)
-
-
-def _cut(need: float, best: float) -> float:
-    return max(need, best - RESOLUTION)
 
 
 def _outside(piece: Piece, s: float, ring: Ring) -> bool:
@@ -127,17 +122,17 @@ def inside_edge(path: Curve, body: Body, n: tuple[float, float], level: float, n
     ends = [(path.start, 0.0), (path.goal, path.length)]
     values = [(level - _extent(body, pose, n), s) for pose, s in ends]
     value, at = min(values)
-    least = _noted(value, at, need, need)
+    least = _noted(value, at, need)
     for piece in path.pieces:
         if piece.straight:
             x, y = point(piece, piece.end)
             value = level - _extent(body, (x, y, piece.heading), n)
-            found = _noted(value, piece.end, need, least.value)
+            found = _noted(value, piece.end, least.value)
         elif level - n[0] * piece.x - n[1] * piece.y - body.reach - piece.length >= need:
             continue
         else:
             bound = _to_edge(piece, body, n, level)
-            found = descend(bound, piece.begin, piece.end, still_needed(need, least), least.value)
+            found = descend(bound, piece.begin, piece.end, need, least.value)
         least = joined(least, found)
     return least
 

@@ -28,13 +28,12 @@ class Least(NamedTuple):
 def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Least:
     """Show that a function is >= need on [lo, hi], and look for values below best.
 
-    Without a value below need, and with ``open`` None, the function is proved >= need on all of [lo, hi].
-    Its least value is not below the ``value`` returned by more than the resolution, unless that is below need
-    and the search for the worst place was cut short.
+    Without a value below need, and with ``open`` None, the function is proved >= need on all of [lo, hi], and
+    its least value is not below the ``value`` returned by more than the resolution. A best value below need says that
+    the need was missed elsewhere already: then, as after a value below need, only worse ones are looked for, not long.
     """
-    best = max(best, need)  # what others do must not excuse this one from its own proof
     at: float | None = None
-    cut = max(need, best - RESOLUTION)
+    cut = worth(need, best)
     heap = [(-math.inf, lo, hi)]  # the least promising stretch first: that finds the least value soonest
     halvings = 0
     while heap and heap[0][0] < cut:
@@ -42,7 +41,7 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
         lower, value, where = bound(a, b)
         if value < best:
             best, at = value, where
-            cut = best - RESOLUTION if best < need else max(need, best - RESOLUTION)
+            cut = worth(need, best)
         if lower >= cut:
             continue
         middle = (a + b) / 2
@@ -59,12 +58,12 @@ def descend(bound: Bound, lo: float, hi: float, need: float, best: float) -> Lea
     return Least(best, at)
 
 
+def worth(need: float, best: float) -> float:
+    """Below what a lower bound must be for a stretch to be worth a closer look."""
+    return best - RESOLUTION if best < need else max(need, best - RESOLUTION)
+
+
 def joined(one: Least, then: Least) -> Least:
     """Two searches as one, where the second began with the value the first had found."""
-    better = one if then.at is None or one.value <= then.value else then
+    better = one if then.at is None else then
     return Least(better.value, better.at, then.open if one.open is None else one.open)
-
-
-def still_needed(need: float, least: Least) -> float:
-    """What the next search has to prove: nothing more, once a value below what is needed was found."""
-    return -math.inf if least.at is not None and least.value < need else need

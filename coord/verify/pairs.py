@@ -41,15 +41,23 @@ class _Search:
     crowded: bool = False
 
     @property
-    def required(self) -> float:
-        """What still has to be proved of every pair [m]; nothing once enough of them failed."""
-        return self.need if len(self.near) + len(self.open) < FINDINGS else -math.inf
+    def full(self) -> bool:
+        """Whether enough pairs failed; of the others it is only of interest whether they come closer still."""
+        return len(self.near) + len(self.open) >= FINDINGS
+
+    def goal(self, i: int, j: int) -> tuple[float, float]:
+        """What to prove of a pair and below what to look for less [m], see ``descend``."""
+        need = -DISTANCE if self.full else self.need
+        known = self.near.get((min(i, j), max(i, j)))
+        return need, max(self.best, need) if known is None else known[0]
 
     def note(self, i: int, j: int, value: float, time: float) -> None:
+        """Keep the distance of two robots at a time, if it is the least of all or too small."""
         pair = (i, j) if i < j else (j, i)
         if value < self.best:
             self.best, self.closest = value, (*pair, time)
-        if value < self.required and value < self.near.get(pair, (math.inf,))[0]:
+        known = self.near.get(pair, (math.inf,))[0]
+        if value < min(self.need, known) and (pair in self.near or not self.full):
             self.near[pair] = (value, time)
 
 
@@ -69,7 +77,7 @@ def check_pairs(
     _report(names, movers, clearance, search, findings)
     if search.best > reach + RESOLUTION and len(movers) > 1:
         # everybody is farther apart than that: look again as far out as the closest pair seen
-        search.need = -math.inf
+        search.need = -DISTANCE
         _sample(movers, rests, leave, search)
         _search_all(movers, rests, search.best, search)
     if search.closest is None:
@@ -138,7 +146,7 @@ def _search_all(movers: Sequence[Mover], rests: Sequence[_Rest], reach: float, s
         for other in grid.near(box):
             _both_rest(movers, rests[other[0]], rests[box[0]], search)
         grid.add(box)
-        if search.best <= 0.0 and search.required == -math.inf:
+        if search.best <= 0.0 and search.full:
             return
     found = candidates(slabs(moving, slab), margins, still, size, _PAIRS)
     search.crowded |= found.crowded
@@ -163,8 +171,7 @@ def _one_moves(movers: Sequence[Mover], i: int, rest: _Rest, search: _Search) ->
         return
     span = travelled(mover.motion, t0), travelled(mover.motion, t1)
     still = translated(turned(body, rest.pose[2]), rest.pose[:2])
-    goal = (search.required, max(search.best, search.required))
-    least = approach(mover.motion.path, mover.body, span, still, body.radius, goal)
+    least = approach(mover.motion.path, mover.body, span, still, body.radius, search.goal(i, rest.robot))
     if least.at is not None:
         search.note(i, rest.robot, least.value, time_at(mover.motion, least.at, t0))
     if least.open is not None:
@@ -177,7 +184,7 @@ def _both_move(movers: Sequence[Mover], i: int, j: int, window: tuple[float, flo
     t1 = min(window[1], one.motion.arrival, two.motion.arrival)
     if t0 >= t1:
         return
-    least = meeting(one, two, t0, t1, search.required, search.best)
+    least = meeting(one, two, t0, t1, *search.goal(i, j))
     if least.at is not None:
         search.note(i, j, least.value, least.at)
     if least.open is not None:

@@ -6,12 +6,11 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass
 
-from coord.verify.bisection import Bound, Least, descend, joined, still_needed
+from coord.verify.bisection import Bound, Least, descend, joined, worth
 from coord.verify.curve import Piece, curvature, heading, point
 from coord.verify.motion import Motion, Stretch, acceleration, arc_length, speed
 from coord.verify.shapes import Body, Ring, gap, minkowski, mirrored, support, turned
 from coord.verify.support import bend
-from coord.verify.tolerances import RESOLUTION
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +37,7 @@ def meeting(first: Mover, second: Mover, t0: float, t1: float, need: float, best
     """
     reach = first.body.reach + second.body.reach
     discs = len(first.body.ring) == len(second.body.ring) == 1
-    least = Least(max(need, best), None)
+    least = Least(best, None)
     one, two = first.motion, second.motion
     k, m = bisect_right(one.ends, t0), bisect_right(two.ends, t0)
     t, before = t0, _distance(first, second, k, m, t0)
@@ -50,11 +49,9 @@ def meeting(first: Mover, second: Mover, t0: float, t1: float, need: float, best
             least = Least(after - reach, end, least.open)
         # no point of the plane is nearer to the ends of a way than half of what the way is too short by
         way = arc_length(a, end) - arc_length(a, t) + arc_length(b, end) - arc_length(b, t)
-        required = still_needed(need, least)
-        cut = max(required, least.value - RESOLUTION)
-        if not (before + after - way) / 2 - reach >= cut + _BACKWARDS:
+        if not (before + after - way) / 2 - reach >= worth(need, least.value) + _BACKWARDS:
             legs = _Leg(first.body, a, one.path.pieces[a.piece]), _Leg(second.body, b, two.path.pieces[b.piece])
-            least = joined(least, _together(*legs, t, end, required, least.value))
+            least = joined(least, _together(*legs, t, end, need, least.value))
         t, before = end, after
         k, m = k + (a.end <= end), m + (b.end <= end)
     return least

@@ -11,7 +11,7 @@ import shapely
 
 from coord.geometry.growth import grow
 from coord.model.obstacle import Circle, Polygon, rectangle
-from coord.paths.skeleton import NoWay, skeleton
+from coord.paths.skeleton import NoWay, search_floor, skeleton
 from coord.paths.taut import taut
 from coord.tolerances import PLANNING_MARGIN
 
@@ -99,7 +99,7 @@ def route():
     """(obstacles, bounds, reach, start, goal) -> skeleton and path, or None where there is no way."""
 
     def find(obstacles, bounds, reach, start, goal):
-        found = skeleton(grow(obstacles, reach, bounds), start, goal)
+        found = skeleton(search_floor(grow(obstacles, reach, bounds), start, goal), start, goal)
         return None if isinstance(found, NoWay) else (found, taut(found))
 
     return find

@@ -217,6 +217,17 @@ def test_every_pair_that_rests_too_near_is_reported(build):
     assert [fault.robots for fault in report.faults] == [("r0", "r1"), ("r2", "r3")]
 
 
+def test_one_collision_excuses_no_other(build):
+    """Pairs that come too near, each by less than the one before, at rest, in passing and on lines and in bends."""
+    robots = [build.robot("a", (0, 0), (9, 0)), build.robot("b", (9, 0.61), (0, 0.61))]
+    robots += [build.robot("c", (0, 9), (9, 9)), build.robot("d", (4, 9.62), (4, 9.62))]
+    robots += [build.robot("e", (0, -9), pieces=[[3, 0, 0.2]]), build.robot("f", (0, -9.63), pieces=[[3, 0, 0.2]])]
+    for order in (robots, robots[::-1]):
+        report = check(build, *order)
+        assert sorted(sorted(fault.robots) for fault in report.faults) == [["a", "b"], ["c", "d"], ["e", "f"]]
+        assert report.min_clearance.value == pytest.approx(0.01, abs=1e-6)
+
+
 def test_there_are_twenty_findings_at_most(build):
     """Fifty robots on one spot are a collision or two; the checker does not count them all."""
     report = check(build, *[build.robot(f"r{k}", (0, 0), (k + 1, 0)) for k in range(50)])

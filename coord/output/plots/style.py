@@ -8,11 +8,16 @@ from collections.abc import Callable
 from typing import Any, Final, TypeAlias
 
 import matplotlib as mpl
+import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.text import Text
 
 from coord.errors import InvalidValueError
+from coord.model.arrays import Array
 from coord.model.result import Plan, RobotPlan
 
 LineStyle: TypeAlias = str | tuple[float, tuple[float, ...]]
@@ -23,12 +28,16 @@ COLOURS: Final = ("#332288", "#CC6677", "#117733", "#DDAA33", "#88CCEE", "#88225
 #: Line styles that tell robots of the same colour apart.
 DASHES: Final[tuple[LineStyle, ...]] = ("solid", (0, (6, 1.5)), (0, (2, 1.5)), (0, (6, 1.5, 1.5, 1.5)))
 
-INK: Final = "#222222"
 #: Hatches that do the same for areas.
 HATCHES: Final = ("", "////", "....", "xxxx")
 
+INK: Final = "#222222"
 GREY: Final = "#777777"
 OBSTACLE: Final = "#9A9A9A"
+ALARM: Final = "#BB3333"
+
+#: [s] A smaller delay rounds to 0.00 s.
+LATE: Final = 0.005
 
 #: [dots per inch] of the files.
 RESOLUTION: Final = 120
@@ -114,3 +123,25 @@ def find(plan: Plan, name: str) -> RobotPlan:
 def delay(robot: RobotPlan) -> float:
     """How much later than alone a robot arrives [s]."""
     return robot.arrival - robot.solo_arrival
+
+
+def is_late(robot: RobotPlan) -> bool:
+    """Whether a robot is delayed by more than rounds to 0.00 s."""
+    return delay(robot) > LATE
+
+
+def points(ax: Axes, places: npt.ArrayLike) -> Array:
+    """Places (n, 2) of the axes as points (n, 2) [pt] of the figure, once its layout is done."""
+    pixels = ax.transData.transform(np.asarray(places, dtype=np.float64).reshape(-1, 2))
+    return np.asarray(pixels * 72 / figure_of(ax).dpi)
+
+
+def text_size(text: Text) -> tuple[float, float]:
+    """Width and height of a text [pt]."""
+    box, dpi = text.get_window_extent(), figure_of(text.axes).dpi if text.axes else 72.0
+    return float(box.width * 72 / dpi), float(box.height * 72 / dpi)
+
+
+def halo(width: float = 2.2) -> list[AbstractPathEffect]:
+    """A white border round letters and lines, so that they are seen on any ground."""
+    return [withStroke(linewidth=width, foreground="white")]

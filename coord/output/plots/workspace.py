@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -11,21 +12,34 @@ from matplotlib.collections import LineCollection, PatchCollection, PolyCollecti
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle as Disc
-from matplotlib.patches import Patch, PathPatch, Rectangle
-from matplotlib.path import Path as Outline
-from matplotlib.patheffects import withStroke
+from matplotlib.patches import Patch
 
-from coord.model.obstacle import Circle, Obstacle
-from coord.model.result import Plan, RobotPlan
-from coord.output.plots.outlines import arrowheads, band, distance_field, line
-from coord.output.plots.style import GREY, INK, OBSTACLE, colour, dashes, figure_of, find, new_figure, shown
+from coord.model.arrays import Array
+from coord.model.path import Path
+from coord.model.problem import Problem
+from coord.model.result import Diagnosis, Plan
+from coord.output.plots.giving_way import GivesWay, giving_way
+from coord.output.plots.lanes import side_by_side
+from coord.output.plots.names import write_names
+from coord.output.plots.outlines import arrowheads, band, line
+from coord.output.plots.style import ALARM, GREY, colour, dashes, figure_of, find, halo, new_figure, shown
+from coord.output.plots.surroundings import draw_surroundings
 
 #: Above this many robots their names would cover the floor.
-MOST_NAMES = 60
+MOST_NAMES: Final = 60
+
+#: Up to this many places where somebody gives way are told one by one.
+MOST_TOLD: Final = 8
+
+#: The longer side of the floor in a picture [inch], and the room round it for names [pt].
+_FLOOR, _MARGIN = 8.0, 20.0
+
+#: [pt] From one line to the next where paths share a way.
+_LANE: Final = 2.1
 
 
 def workspace(plan: Plan, robot: str | None = None, ax: Axes | None = None) -> Figure:
-    """Draw the floor with obstacles, paths, the floor that robots sweep, starts and goals.
+    """Draw the floor with obstacles, paths, the floor that robots sweep, starts, goals, and who gives way where.
 
     Parameters
     ----------
@@ -34,134 +48,127 @@ def workspace(plan: Plan, robot: str | None = None, ax: Axes | None = None) -> F
     """
     if robot is not None:
         find(plan, robot)
-    xmin, ymin, xmax, ymax = plan.problem.workspace.bounds
+    problem = plan.problem
+    ax = _axes(problem, ax)
+    names = [part.robot.name for part in plan.robots]
+    strength = [1.0 if robot in (None, name) else 0.2 for name in names]
+    paths = [part.path for part in plan.robots]
+    marks = [mark for mark in giving_way(plan) if robot in (None, mark.robot.robot.name)]
+    handles = draw_surroundings(ax, problem)
+    handles += [*_draw_paths(ax, problem, paths, strength), *_draw_ends(ax, problem, strength)]
+    handles += _draw_marks(ax, marks, names)
+    count, name = len(names), shown(problem.name, 60) or "The floor"
+    title = f"{name}: where {'1 robot drives' if count == 1 else f'{count} robots drive'}, seen from above"
+    chosen = [k for k, name in enumerate(names) if count <= MOST_NAMES or name == robot]
+    _finish(ax, problem, title, handles)
+    write_names(ax, problem, [line(path)[:, :2] for path in paths], chosen, [mark.place for mark in marks])
+    return figure_of(ax)
+
+
+def floor(problem: Problem, diagnoses: Sequence[Diagnosis] = (), ax: Axes | None = None) -> Figure:
+    """Draw what is known of a problem without a plan: starts, goals, obstacles, and where the diagnoses point to."""
+    ax = _axes(problem, ax)
+    strength = [1.0] * len(problem.robots)
+    flights = [np.array([robot.start, robot.goal]) for robot in problem.robots]
+    colours = [colour(k) for k in range(len(flights))]
+    ax.add_collection(LineCollection(flights, colors=colours, linewidths=0.9, linestyles=":", zorder=4), autolim=False)
+    handles = [*draw_surroundings(ax, problem), *_draw_ends(ax, problem, strength)]
+    handles.append(Line2D([], [], color=GREY, lw=0.9, ls=":", label="from start to goal as the crow flies: no path"))
+    marks = [(diagnosis.place, diagnosis.code) for diagnosis in diagnoses if diagnosis.place is not None]
+    for (x, y), _ in marks:
+        ax.plot([x], [y], ls="none", marker="X", ms=9, mfc=ALARM, mec="white", mew=1.0, zorder=8)
+    if marks:
+        codes = ", ".join(dict.fromkeys(code for _, code in marks))
+        handles.append(Line2D([], [], ls="none", marker="X", ms=9, mfc=ALARM, mec="white", label=f"reason: {codes}"))
+    _finish(ax, problem, f"{shown(problem.name, 60) or 'The floor'}: there is no plan; starts and goals", handles)
+    few = range(len(flights) if len(flights) <= MOST_NAMES else 0)
+    write_names(ax, problem, flights, few, [place for place, _ in marks])
+    return figure_of(ax)
+
+
+def _axes(problem: Problem, ax: Axes | None) -> Axes:
+    xmin, ymin, xmax, ymax = problem.workspace.bounds
     if ax is None:
-        # the longer side of the floor gets 8 inches, the legend has its place beside it
-        scale = 8 / max(xmax - xmin, ymax - ymin)
+        # the legend has its place beside the floor
+        scale = _FLOOR / max(xmax - xmin, ymax - ymin)
         width, height = max((xmax - xmin) * scale, 2.0), max((ymax - ymin) * scale, 1.6)
-        ax = new_figure(width + 3.4, height + 0.9).add_subplot()
-    edge = 0.02 * max(xmax - xmin, ymax - ymin)
+        ax = new_figure(width + 3.6, height + 1.1).add_subplot()
+    edge = _MARGIN * _point(problem)
     ax.set_xlim(xmin - edge, xmax + edge)
     ax.set_ylim(ymin - edge, ymax + edge)
     ax.set_aspect("equal")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
-    handles = [*_draw_obstacles(ax, plan), *_draw_robots(ax, plan, robot)]
+    return ax
+
+
+def _point(problem: Problem) -> float:
+    """What a typographic point is on the floor [m], in a figure of our size."""
+    xmin, ymin, xmax, ymax = problem.workspace.bounds
+    return max(xmax - xmin, ymax - ymin) / (72 * _FLOOR - 2 * _MARGIN)
+
+
+def _finish(ax: Axes, problem: Problem, title: str, handles: list[Artist]) -> None:
     ax.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
-    ax.set_title(_title(plan))
-    return figure_of(ax)
+    many = len(problem.robots) > MOST_NAMES
+    ax.set_title(title + (f" (names left out above {MOST_NAMES} robots)" if many else ""))
 
 
-def _title(plan: Plan) -> str:
-    count, name = len(plan.robots), shown(plan.problem.name, 60) or "The floor"
-    robots = "1 robot" if count == 1 else f"{count} robots"
-    title = f"{name}: where {robots} drive{'s' if count == 1 else ''}, seen from above"
-    return title + (f" (names left out above {MOST_NAMES} robots)" if count > MOST_NAMES else "")
-
-
-def _draw_robots(ax: Axes, plan: Plan, chosen: str | None) -> list[Artist]:
-    xmin, ymin, xmax, ymax = plan.problem.workspace.bounds
-    size = 0.011 * max(xmax - xmin, ymax - ymin)
-    names = [robot.robot.name for robot in plan.robots]
-    strength = [1.0 if chosen in (None, name) else 0.2 for name in names]
-    colours = [(colour(k), strength[k]) for k in range(len(names))]
-    fills = [(colour(k), 0.16 * strength[k]) for k in range(len(names))]
-    styles = [dashes(k) for k in range(len(names))]
-    radii = [robot.robot.footprint.radius for robot in plan.robots]
-    lines = [line(robot.path)[:, :2] for robot in plan.robots]
-    bands = [band(robot.path, radius) for robot, radius in zip(plan.robots, radii, strict=True)]
-    starts = [Disc(robot.robot.start, radius) for robot, radius in zip(plan.robots, radii, strict=True)]
-    goals = [Disc(robot.robot.goal, radius) for robot, radius in zip(plan.robots, radii, strict=True)]
-    heads = [
-        (head, colours[k]) for k, robot in enumerate(plan.robots) for head in arrowheads(robot.path, size, 16 * size)
-    ]
+def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[float]) -> list[Artist]:
+    """The band of floor and the line of each path, with its direction."""
+    metre, count = _point(problem), len(paths)
+    colours = [(colour(k), strength[k]) for k in range(count)]
+    fills = [(colour(k), 0.14 * strength[k]) for k in range(count)]
+    bands = [band(path, robot.footprint.radius) for path, robot in zip(paths, problem.robots, strict=True)]
     ax.add_collection(PolyCollection(bands, facecolors=fills, edgecolors="none", zorder=2), autolim=False)
-    ax.add_collection(LineCollection(lines, colors=colours, linewidths=1.4, linestyles=styles, zorder=4), autolim=False)
-    arrows = PolyCollection([head for head, _ in heads], facecolors=[c for _, c in heads], edgecolors="none", zorder=5)
-    ax.add_collection(arrows, autolim=False)
-    rings = PatchCollection(goals, facecolors="none", edgecolors=colours, linewidths=2.0, zorder=6)
-    ax.add_collection(rings, autolim=False)
-    ax.add_collection(
-        PatchCollection(starts, facecolors=colours, edgecolors="white", linewidths=0.6, zorder=7), autolim=False
-    )
-    for robot, name in zip(plan.robots, names, strict=True):
-        if len(names) <= MOST_NAMES or name == chosen:
-            _write_name(ax, robot, 9.0 if len(names) <= 20 else 6.5)
+    lines: list[Array] = [line(path)[:, :2] for path in paths]
+    if count <= MOST_NAMES:
+        lines = side_by_side(paths, _LANE * metre)
+    styles = [dashes(k) for k in range(count)]
+    ways = LineCollection(lines, colors=colours, linewidths=1.4, linestyles=styles, zorder=4, path_effects=halo(2.4))
+    ax.add_collection(ways, autolim=False)
+    heads: list[Array] = []
+    fills = []
+    for k, path in enumerate(paths):
+        found = arrowheads(path, 6 * metre, 100 * metre)
+        heads += found
+        fills += [colours[k]] * len(found)
+    ax.add_collection(PolyCollection(heads, facecolors=fills, edgecolors="none", zorder=5), autolim=False)
     return [
-        Line2D(
-            [],
-            [],
-            ls="none",
-            marker="o",
-            ms=10,
-            mfc=colour(0),
-            mec="white",
-            label="start: the robot as it stands there",
-        ),
-        Line2D([], [], ls="none", marker="o", ms=10, mfc="none", mec=colour(0), mew=2, label="goal"),
-        Line2D([], [], color=colour(0), marker=">", ms=6, label="path of the robot's centre"),
-        Patch(facecolor=(colour(0), 0.16), label="floor that the robot sweeps"),
+        Line2D([], [], color=GREY, lw=1.4, marker=">", ms=6, label="path of the robot's centre (shared ways: abreast)"),
+        Patch(facecolor=(GREY, 0.25), label="floor that the robot sweeps"),
     ]
 
 
-def _write_name(ax: Axes, robot: RobotPlan, fontsize: float) -> None:
-    """Write a robot's name beside its start: behind it, off its path, or where there is room on the floor."""
-    name, radius, (x, y) = shown(robot.robot.name, 16), robot.robot.footprint.radius, robot.robot.start
-    (xmin, xmax), (ymin, ymax) = ax.get_xlim(), ax.get_ylim()
-    metre = 8 * 72 / max(xmax - xmin, ymax - ymin)  # [points], near enough to judge whether a name fits
-    width, height = 0.62 * fontsize * len(name) / metre, 1.4 * fontsize / metre
-    for turn in (math.pi, math.pi / 2, -math.pi / 2, 0.0):
-        c, s = math.cos(robot.path.start[2] + turn), math.sin(robot.path.start[2] + turn)
-        side = 0 if abs(c) < 0.5 else math.copysign(1, c)  # the text stands above, below, left or right of its anchor
-        level = 0 if side else math.copysign(1, s)
-        u, v = x + radius * c, y + radius * s
-        left, low = u + width * (side - 1) / 2, v + height * (level - 1) / 2
-        if xmin < left < left + width < xmax and ymin < low < low + height < ymax:
-            break
-    ax.annotate(
-        name,
-        (u, v),
-        xytext=(3 * c, 3 * s),
-        textcoords="offset points",
-        ha=("center", "left", "right")[int(side)],
-        va=("center", "bottom", "top")[int(level)],
-        fontsize=fontsize,
-        color=INK,
-        zorder=8,
-        path_effects=[withStroke(linewidth=2.2, foreground="white")],
-    )
+def _draw_ends(ax: Axes, problem: Problem, strength: list[float]) -> list[Artist]:
+    """Starts as discs, and goals as rings with a white border, so that a ring is seen on a disc too."""
+    robots, point = problem.robots, _point(problem)
+    colours = [(colour(k), strength[k]) for k in range(len(robots))]
+    starts = [Disc(robot.start, robot.footprint.radius) for robot in robots]
+    goals = [Disc(robot.goal, robot.footprint.radius) for robot in robots]
+    widths = [min(2.0, 0.4 * robot.footprint.radius / point) for robot in robots]
+    discs = PatchCollection(starts, facecolors=colours, edgecolors="white", linewidths=0.6, zorder=6)
+    borders = PatchCollection(goals, facecolors="none", edgecolors="white", linewidths=[2.2 * w for w in widths])
+    rings = PatchCollection(goals, facecolors="none", edgecolors=colours, linewidths=widths, zorder=7)
+    borders.set(zorder=6.9, alpha=0.9)
+    for collection in (discs, borders, rings):
+        ax.add_collection(collection, autolim=False)
+    return [
+        Line2D([], [], ls="none", marker="o", ms=10, mfc=GREY, mec="white", label="start, with the robot's name"),
+        Line2D([], [], ls="none", marker="o", ms=10, mfc="none", mec=GREY, mew=2, label="goal, its name in grey"),
+    ]
 
 
-def _draw_obstacles(ax: Axes, plan: Plan) -> list[Artist]:
-    """Obstacles, the edge of the floor, and how close to both a robot's centre may come."""
-    problem, bounds = plan.problem, plan.problem.workspace.bounds
-    xmin, ymin, xmax, ymax = bounds
-    ax.add_patch(Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, fill=False, ec=INK, lw=1.6, zorder=3.2))
-    for obstacle in problem.obstacles:
-        ax.add_patch(PathPatch(_outline(obstacle), facecolor=OBSTACLE, edgecolor=INK, lw=0.8, zorder=3))
-    handles: list[Artist] = [Line2D([], [], color=INK, lw=1.6, label="edge of the floor")]
-    if problem.obstacles:
-        handles.append(Patch(facecolor=OBSTACLE, edgecolor=INK, label="obstacle"))
-    radii = sorted({robot.robot.footprint.radius for robot in plan.robots})
-    for radius, style in zip(dict.fromkeys([radii[0], radii[-1]]), ("--", ":"), strict=False):
-        reach = radius + problem.workspace.clearance
-        if problem.obstacles:
-            field = distance_field(problem.obstacles, bounds, reach)
-            # below the obstacles, which hide the same line on their inside
-            ax.contour(
-                field.x, field.y, field.distance, [reach], colors=GREY, linewidths=0.8, linestyles=style, zorder=2.5
-            )
-        inset = Rectangle((xmin + reach, ymin + reach), xmax - xmin - 2 * reach, ymax - ymin - 2 * reach)
-        inset.set(fill=False, ec=GREY, lw=0.8, ls=style, zorder=2.5)
-        ax.add_patch(inset)
-        clearance = f" + clearance {problem.workspace.clearance:g} m" if problem.workspace.clearance else ""
-        label = f"no centre comes nearer\n(radius {radius:g} m{clearance})"
-        handles.append(Line2D([], [], color=GREY, lw=0.8, ls=style, label=label))
+def _draw_marks(ax: Axes, marks: list[GivesWay], names: list[str]) -> list[Artist]:
+    """Hollow diamonds where robots give way; told one by one if they are few."""
+    style: dict[str, Any] = {"ls": "none", "marker": "D", "ms": 6, "mfc": "white", "mew": 1.6}
+    handles: list[Artist] = []
+    for mark in marks:
+        name, other = mark.robot.robot.name, mark.other.robot.name
+        ink = colour(names.index(name))
+        ax.plot(*mark.place, mec=ink, zorder=8, path_effects=halo(3.2), **style)
+        told = f"here {shown(name, 16)} lets {shown(other, 16)} pass"
+        handles.append(Line2D([], [], mec=ink, label=told, **style))
+    if len(handles) > MOST_TOLD:
+        return [Line2D([], [], mec=GREY, label="here the robot of this colour lets another pass", **style)]
     return handles
-
-
-def _outline(obstacle: Obstacle) -> Outline:
-    if isinstance(obstacle, Circle):
-        return Outline.circle(obstacle.center, obstacle.radius)
-    rings = [Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in obstacle.rings]
-    return Outline.make_compound_path(*rings)
