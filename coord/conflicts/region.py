@@ -55,6 +55,7 @@ class ConflictRegion:
 class _Blocks:
     """Convex blocks, one a pair of near chords: |D + u (s - s0) - w (sigma - sigma0)| < R, s and sigma in a box."""
 
+    chords: npt.NDArray[np.intp]  # (n, 2) indices of ego's and the other's chord
     D: Array
     u: Array
     w: Array
@@ -103,6 +104,7 @@ def _near_blocks(ego: Chords, other: Chords, distance: float, start_free: bool, 
     low[0] -= 0.0 if start_free else _BEYOND
     high[-1] += 0.0 if goal_free else _BEYOND
     return _Blocks(
+        np.stack([i, k], axis=1),
         (p - q)[keep],
         u[keep],
         w[keep],
@@ -183,22 +185,41 @@ def _components(blocks: _Blocks) -> list[npt.NDArray[np.intp]]:
     n = len(blocks.R)
     if n == 1:
         return [np.array([0])]
-    s_low, s_high = blocks.s[:, 0], blocks.s[:, 1]
+    a, b = _touching(blocks)
     group = np.arange(n)
-    slack = SAME_PLACE * 10
-    touch = (
-        (s_low[:, None] <= s_high[None] + slack)
-        & (s_low[None] <= s_high[:, None] + slack)
-        & (blocks.sigma[:, :1] <= blocks.sigma[None, :, 1] + slack)
-        & (blocks.sigma[None, :, 0] <= blocks.sigma[:, 1:] + slack)
-    )
     while True:  # labels flow to the smallest of a group, in ever larger strides
-        least = np.where(touch, group[None], n).min(axis=1)
+        least = group.copy()
+        np.minimum.at(least, a, group[b])
+        np.minimum.at(least, b, group[a])
         least = least[least]
         if np.array_equal(least, group):
             break
         group = least
     return [np.flatnonzero(group == label) for label in np.unique(group)]
+
+
+def _touching(blocks: _Blocks) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Pairs of blocks of neighbouring chords whose boxes touch; others cannot."""
+    row, column = blocks.chords.T
+    width = int(column.max()) + 3
+    key = row * width + column + 1
+    order = np.argsort(key, kind="stable")
+    found_a, found_b = [], []
+    for step in (1, width - 1, width, width + 1):
+        place = np.minimum(np.searchsorted(key[order], key + step), len(key) - 1)
+        b = order[place]
+        a = np.flatnonzero(key[b] == key + step)
+        found_a.append(a)
+        found_b.append(b[a])
+    a, b = np.concatenate(found_a), np.concatenate(found_b)
+    slack = SAME_PLACE * 10
+    touch = (
+        (blocks.s[a, 0] <= blocks.s[b, 1] + slack)
+        & (blocks.s[b, 0] <= blocks.s[a, 1] + slack)
+        & (blocks.sigma[a, 0] <= blocks.sigma[b, 1] + slack)
+        & (blocks.sigma[b, 0] <= blocks.sigma[a, 1] + slack)
+    )
+    return a[touch], b[touch]
 
 
 def _region(blocks: _Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:

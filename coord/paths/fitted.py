@@ -25,6 +25,7 @@ from coord.model.robot import Limits
 from coord.paths import turns
 from coord.paths.skeleton import Skeleton, Turn
 from coord.paths.taut import taut
+from coord.solvers.jerk import rest_to_rest
 
 #: Shares of half a turn that each clothoid may take.
 _SHARES = (0.0, 0.5, 1.0)
@@ -35,8 +36,11 @@ _RADII = 6
 #: Rounds over all turns.
 _ROUNDS = 2
 
+#: A path within this share of the time that its skeleton's length alone would take is not improved any more.
+_GOOD_ENOUGH = 2e-4
+
 #: [m] Fixed point of directions and effective radii: change below which it has converged, rounds at most.
-_CONVERGED, _MOST_ROUNDS = 1e-13, 100
+_CONVERGED, _MOST_ROUNDS = 1e-12, 100
 
 #: [m] Curves keep this much more than the distance, so that their certificate needs no tiny chords.
 _AIR = 2e-6
@@ -63,13 +67,16 @@ def fitted(skeleton: Skeleton, limits: Limits, floor: Floor) -> Path:
     shapes = [_Shape(turn.radius + _AIR, 0.0) for turn in skeleton.turns]
     best = taut(skeleton)
     least = _time(best, limits)
+    ideal = rest_to_rest(skeleton.length, limits).arrival
     for _ in range(_ROUNDS):
         changed = False
+        if least <= ideal * (1 + _GOOD_ENOUGH):
+            break
         for k, turn in enumerate(skeleton.turns):
             for shape in _candidates(turn, limits):
                 trial = [*shapes[:k], shape, *shapes[k + 1 :]]
                 path = _path(skeleton, skeleton.turns, trial)
-                if path is None or shape == shapes[k]:
+                if path is None or shape == shapes[k] or path.length / limits.speed >= least:
                     continue
                 time = _time(path, limits)
                 if time < least * (1 - 1e-6) and keeps_distance(floor, path):

@@ -12,19 +12,20 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
-import numpy as np
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-
 
 @lru_cache(maxsize=65536)
 def middle(half_turn: float, share: float) -> tuple[float, float]:
     """(P_x, P_y) of the curve with peak curvature 1, for half a turn [rad] and the clothoid's share of it."""
-    length = 2 * share * half_turn
-    u = length * (_NODES + 1) / 2
-    heading = u * u / (2 * length) if length > 0 else 0 * u
-    x = float((np.cos(heading) * _WEIGHTS).sum()) * length / 2
-    y = float((np.sin(heading) * _WEIGHTS).sum()) * length / 2
+    # the clothoid turns by tau over the length 2 tau; its ends are power series in tau (Fresnel integrals)
+    tau = share * half_turn
+    x = y = 0.0
+    term, n = 2 * tau, 0
+    while abs(term) > 1e-17:
+        x += term / (4 * n + 1)
+        term *= tau / (2 * n + 1)
+        y += term / (4 * n + 3)
+        term *= -tau / (2 * n + 2)
+        n += 1
     begin, end = share * half_turn, half_turn
     return x + math.sin(end) - math.sin(begin), y + math.cos(begin) - math.cos(end)
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from coord.alone.inverse import time_at
 from coord.model.arrays import Array
+from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.outlines import line
 
 #: Samples along each axis, while a window is looked for and when it is drawn.
 _COARSE, _FINE = 150, 400
+
+#: [1] Windows further away in time than this share of the picture were never in the way.
+_NEAR: Final = 0.12
 
 
 class Window(NamedTuple):
@@ -38,6 +44,24 @@ def windows(plan: Plan, ego: RobotPlan, until: float) -> list[Window]:
             if window is not None:
                 result.append(window)
     return result
+
+
+def matters(window: Window, motions: Sequence[VelocityProfile], end: float) -> bool:
+    """Whether a window is near one of these motions in time, or between them: within ``_NEAR`` of the whole time.
+
+    One that a motion passes long before and another long after did matter: it lies between them.
+    """
+    rows = np.nonzero((window.gap < 0).any(axis=1))[0]
+    inside = window.gap[rows] < 0
+    first = window.t[np.argmax(inside, axis=1)]
+    last = window.t[-1 - np.argmax(inside[:, ::-1], axis=1)]
+    sides = set()
+    for motion in motions:
+        t = time_at(motion, window.s[rows])
+        if np.min(np.maximum(first - t, t - last)) < _NEAR * end:
+            return True
+        sides.add(bool(np.all(t > last)))
+    return len(sides) > 1
 
 
 def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: float) -> Window | None:

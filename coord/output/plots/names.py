@@ -92,7 +92,7 @@ def _move(ax: Axes, spot: _Spot, offset: Array, radius: float, size: tuple[float
 def _label(spot: _Spot, centre: Array, discs: Array) -> Label:
     """All places round a disc: rather close to it, behind the robot than before it, and level with it or above."""
     width, height = text_size(spot.text)
-    size = (width, 0.8 * height)  # the box of a text has room for letters with tails
+    size = (width + 4, height + 1)  # some air
     own = int(np.argmin(np.hypot(*(discs[:, :2] - centre).T)))
     radius = float(discs[own, 2])
     places, costs = [], []
@@ -122,7 +122,7 @@ def _clutter(ax: Axes, problem: Problem, lines: Sequence[Array], marks: Sequence
     discs += [(*points(ax, [mark])[0], 4.0, _MARK) for mark in marks]
     xmin, ymin, xmax, ymax = problem.workspace.bounds
     edge = np.array([(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax), (xmin, ymin)])
-    walls = [ring[:, :2] for obstacle in problem.obstacles for ring in outline(obstacle).to_polygons(closed_only=True)]
+    walls = [np.asarray(ring) for obstacle in problem.obstacles for ring in outline(obstacle).to_polygons()]
     chains = [(edge, _EDGE), *((way, _PATH) for way in lines), *((ring, _WALL) for ring in walls)]
     segments = [_segments(points(ax, chain), cost) for chain, cost in chains if len(chain) > 1]
     inner = (frame[0, 0] + 2, frame[0, 1] + 2, frame[1, 0] - 2, frame[1, 1] - 2)

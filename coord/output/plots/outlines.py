@@ -37,18 +37,20 @@ def band(path: Path, radius: float) -> Array:
     return np.concatenate([right, front, left[::-1], back])
 
 
-def arrowheads(path: Path, size: float, spacing: float) -> list[Array]:
-    """Triangles (3, 2) along a path that show its direction, about ``spacing`` [m] apart."""
-    if path.length < 2 * size:
+def arrowheads(way: Array, size: float, spacing: float) -> list[Array]:
+    """Triangles (3, 2) along a line (n, 2) that show its direction, about ``spacing`` [m] apart."""
+    steps = np.diff(way, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    s = np.concatenate([[0.0], np.cumsum(lengths)])
+    if s[-1] < 2 * size:
         return []
-    count = max(1, int(path.length / spacing))
+    count = max(1, int(s[-1] / spacing))
     heads = []
-    for x, y, heading in path.pose((np.arange(count) + 0.5) * path.length / count).tolist():
-        ahead, aside = (
-            np.array([math.cos(heading), math.sin(heading)]),
-            np.array([-math.sin(heading), math.cos(heading)]),
-        )
-        centre = np.array([x, y])
+    for at in ((np.arange(count) + 0.5) * s[-1] / count).tolist():
+        k = min(int(np.searchsorted(s, at, side="right")) - 1, len(steps) - 1)
+        ahead = steps[k] / lengths[k]
+        aside = np.array([-ahead[1], ahead[0]])
+        centre = way[k] + (at - s[k]) * ahead
         heads.append(
             np.array([centre + size * ahead, centre - size * (ahead - aside) / 2, centre - size * (ahead + aside) / 2])
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -10,105 +10,144 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 
+from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.alone import alone
-from coord.output.plots.forbidden import Window, windows
-from coord.output.plots.style import GREY, INK, colour, delay, figure_of, find, hatch, new_figure, shown
+from coord.output.plots.forbidden import Window, matters, windows
+from coord.output.plots.labels import Clutter, Label, place
+from coord.output.plots.style import (
+    GREY,
+    INK,
+    colour,
+    delay,
+    figure_of,
+    find,
+    halo,
+    hatch,
+    is_late,
+    new_figure,
+    points,
+    shown,
+    text_size,
+)
 
 #: More robots than this are not listed one by one in the legend.
-MOST_LISTED = 14
+MOST_LISTED: Final = 14
+
+#: A robot that gives way on the move is shown rather than one that waits at its start, if its delay is not much less.
+_ON_THE_MOVE, _MUCH_LESS = ("splice", "program"), 0.2
+
+#: Shade of areas that are far from all that the robot does or would do.
+_PALE: Final = "#BBBBBB"
 
 
 def st(plan: Plan, robot: str | None = None, ax: Axes | None = None) -> Figure:
     """Draw the path-time diagram of one robot (Kant & Zucker 1986; Fraichard 1999).
 
     Time runs to the right, the way along the robot's path upwards; filled areas are forbidden because a robot
-    planned earlier is too close there and then. The areas are sampled from the definition, for the eye only.
+    planned earlier is too close there and then. The areas are sampled from the definition, for the eye only;
+    those that are far from the robot in time, planned or alone, are grey.
 
     Parameters
     ----------
-    robot : whose diagram; without it the robot that the others delay most.
+    robot : whose diagram; without it the most delayed one, of those that give way on the move if there are any.
     ax : axes to draw into; without them a figure is made.
     """
-    ego = find(plan, robot) if robot is not None else max(plan.robots, key=delay)
+    ego, reason = (find(plan, robot), "") if robot is not None else _choose(plan)
     free = alone(ego)
     end = 1.12 * max(ego.arrival, free.arrival) or 1.0
     if ax is None:
         ax = new_figure(9.6, 5.2).add_subplot()
     found = windows(plan, ego, end)
-    handles = [_draw_window(ax, plan, ego, window) for window in found]
-    _write_names(ax, ego, found, end)
+    near = [matters(window, (ego.profile, free), end) for window in found]
+    handles = [_draw_window(ax, plan, ego, one, coloured) for one, coloured in zip(found, near, strict=True)]
     ax.axhline(ego.path.length, color=INK, lw=0.8, ls=":")
     stay = plan.problem.workspace.after_arrival == "stay"
     ax.plot(*_curve(free, end if stay else free.arrival), color=GREY, lw=1.3, ls=(0, (4, 2)), zorder=4)
-    ax.plot(
-        *_curve(ego.profile, end if stay else ego.arrival),
-        color=INK,
-        lw=2.2,
-        zorder=5,
-        path_effects=[withStroke(linewidth=4, foreground="white")],
-    )
+    own = _curve(ego.profile, end if stay else ego.arrival)
+    ax.plot(*own, color=INK, lw=2.2, zorder=5, path_effects=halo(4))
     ax.plot([ego.arrival], [ego.path.length], marker="o", ms=7, mfc="white", mec=INK, mew=1.6, zorder=6)
     ax.set_xlim(0, end)
     ax.set_ylim(0, 1.08 * ego.path.length or 1.0)
     ax.set_xlabel("time [s]")
     ax.set_ylabel("distance along its path [m]")
-    ax.set_title(_title(plan, ego, robot is None, len(found)))
+    ax.set_title(_title(plan, ego, reason, len(found)))
+    listed = _listed([handle for handle, coloured in zip(handles, near, strict=True) if coloured])
+    if not all(near):
+        listed.append(Patch(facecolor=_PALE, alpha=0.6, label="others, which it never comes near to"))
     ax.legend(
-        handles=[*_own_handles(ego, free), *_listed(handles)],
-        loc="upper left",
-        bbox_to_anchor=(1.01, 1.0),
-        borderaxespad=0.0,
+        handles=[*_own_handles(ego, free), *listed], loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0
     )
+    _write_names(ax, ego, found, near, (own, _curve(free, end)))
     return figure_of(ax)
 
 
-def _draw_window(ax: Axes, plan: Plan, ego: RobotPlan, window: Window) -> Artist:
+def _choose(plan: Plan) -> tuple[RobotPlan, str]:
+    """The robot with most to show, and how the title calls it."""
+    most = max(plan.robots, key=delay)
+    moving = [robot for robot in plan.robots if robot.how in _ON_THE_MOVE and is_late(robot)]
+    best = max(moving, key=delay, default=most)
+    if best is most or delay(best) < _MUCH_LESS * delay(most):
+        return most, ", the most delayed robot," if is_late(most) else ""
+    return best, ", the most delayed of those that give way on the move,"
+
+
+def _draw_window(ax: Axes, plan: Plan, ego: RobotPlan, window: Window, coloured: bool) -> Artist:
     name, k = window.robot.robot.name, plan.robots.index(window.robot)
-    fill: dict[str, Any] = {"colors": [colour(k)], "hatches": [hatch(k) or None], "alpha": 0.45, "zorder": 2}
+    ink = colour(k) if coloured else _PALE
+    fill: dict[str, Any] = {"colors": [ink], "alpha": 0.45, "zorder": 2 if coloured else 1.5}
+    if coloured:
+        fill["hatches"] = [hatch(k) or None]
     ax.contourf(window.t, window.s, window.gap, [-1e9, 0.0], **fill)
-    ax.contour(window.t, window.s, window.gap, [0.0], colors=[colour(k)], linewidths=1.0, linestyles="solid", zorder=3)
-    way = ": lets it pass" if name in ego.after else ": passes ahead of it" if name in ego.before else ""
-    return Patch(
-        facecolor=(colour(k), 0.45), edgecolor=colour(k), hatch=hatch(k), label=f"too close to {shown(name)}{way}"
-    )
+    if coloured:
+        ax.contour(window.t, window.s, window.gap, [0.0], colors=[ink], linewidths=1.0, linestyles="solid", zorder=3)
+    way = ": passes after it" if name in ego.after else ": passes before it" if name in ego.before else ""
+    return Patch(facecolor=(ink, 0.45), edgecolor=ink, hatch=hatch(k), label=f"too close to {shown(name)}{way}")
 
 
-def _write_names(ax: Axes, ego: RobotPlan, found: list[Window], end: float) -> None:
-    """Write the robots' names into their areas, small areas first, each far from the names and curves before it."""
-    length = ego.path.length
-    t, s = _curve(ego.profile, end)
-    taken = np.column_stack([t / end, s / length])[::20] if length else np.empty((0, 2))
-    for window in sorted(found, key=lambda window: (np.ptp(window.t) * np.ptp(window.s), window.robot.robot.name)):
-        rows, columns = np.nonzero(window.gap < 0.75 * window.gap.min())
-        places = np.column_stack([window.t[columns] / end, window.s[rows] / length])[:: max(1, len(rows) // 500)]
-        inside = np.all((places > (0.05, 0.04)) & (places < (0.95, 0.97)), axis=1)
-        places = places[inside] if inside.any() else places
-        room = np.hypot(*(places[:, None] - taken).transpose(2, 0, 1)).min(axis=1)
-        # beyond a fifth of the picture more room is no better
-        best = places[np.argmax(np.minimum(room, 0.2).round(3))]
-        taken = np.vstack([taken, best])
-        name = shown(window.robot.robot.name, 16)
-        halo = [withStroke(linewidth=2.2, foreground="white")]
-        x, y = float(best[0] * end), float(best[1] * length)
-        ax.text(x, y, name, ha="center", va="center", fontsize=8, color=INK, zorder=6, path_effects=halo)
+def _write_names(
+    ax: Axes, ego: RobotPlan, found: list[Window], near: list[bool], curves: tuple[tuple[Array, Array], ...]
+) -> None:
+    """Write the robots' names into their areas, where they touch neither each other nor the lines."""
+    figure_of(ax).draw_without_rendering()  # only then does the figure know where a second is
+    corners = points(ax, [(ax.get_xlim()[0], ax.get_ylim()[0]), (ax.get_xlim()[1], ax.get_ylim()[1])])
+    chains = [(points(ax, np.column_stack(curve)[::6]), cost) for curve, cost in zip(curves, (12.0, 4.0), strict=True)]
+    segments = [np.column_stack([c[:-1], c[1:], np.full(len(c) - 1, cost)]) for c, cost in chains]
+    frame = tuple(float(value) for value in (*(corners[0] + 4), *(corners[1] - 4)))
+    goal = points(ax, [(0.0, ego.path.length)])[0, 1]
+    line = [[corners[0, 0], goal, corners[1, 0], goal, 4.0]]
+    clutter = Clutter(frame, np.empty((0, 4)), np.concatenate([*segments, line]))  # type: ignore[arg-type]
+    texts, labels = [], []
+    for window, coloured in zip(found, near, strict=True):
+        text = ax.text(
+            0.0,
+            0.0,
+            shown(window.robot.robot.name, 16),
+            ha="center",
+            va="center",
+            fontsize=8 if coloured else 7,
+            color=INK if coloured else GREY,
+            zorder=6,
+            path_effects=halo(),
+        )
+        text.set_in_layout(False)
+        rows, columns = np.nonzero(window.gap < 0.3 * window.gap.min())
+        step = max(1, len(rows) // 400)
+        centres = points(ax, np.column_stack([window.t[columns], window.s[rows]]))[::step]
+        depth = (window.gap[rows, columns] / window.gap.min())[::step]
+        labels.append(Label(centres, 6 * (1 - depth), text_size(text)))
+        texts.append(text)
+    for text, label, chosen in zip(texts, labels, place(labels, clutter), strict=True):
+        x, y = label.centres[chosen] * figure_of(ax).dpi / 72
+        text.set_position(tuple(ax.transData.inverted().transform((x, y)).tolist()))
 
 
 def _own_handles(ego: RobotPlan, free: VelocityProfile) -> list[Artist]:
+    planned = f"as planned: arrives at {ego.arrival:.2f} s"
     return [
-        Line2D(
-            [],
-            [],
-            color=INK,
-            lw=2.2,
-            marker="o",
-            mfc="white",
-            mec=INK,
-            label=f"as planned: arrives at {ego.arrival:.2f} s",
-        ),
+        Line2D([], [], color=INK, lw=2.2, marker="o", mfc="white", mec=INK, label=planned),
         Line2D([], [], color=GREY, lw=1.3, ls=(0, (4, 2)), label=f"alone on the floor: {free.arrival:.2f} s"),
         Line2D([], [], color=INK, lw=0.8, ls=":", label=f"goal, after {ego.path.length:.2f} m"),
     ]
@@ -121,11 +160,10 @@ def _listed(handles: list[Artist]) -> list[Artist]:
     return [*handles[:MOST_LISTED], more]
 
 
-def _title(plan: Plan, ego: RobotPlan, chosen_here: bool, met: int) -> str:
+def _title(plan: Plan, ego: RobotPlan, reason: str, met: int) -> str:
     name = shown(ego.robot.name)
     if ego.path.length == 0:
         return f"{name} stays where it is: its goal is its start"
-    reason = ", the most delayed robot," if chosen_here and delay(ego) > 0.005 else ""
     if not met:
         return f"How {name}{reason} drives along its path\n(no robot planned earlier comes near it)"
     return (
@@ -135,6 +173,6 @@ def _title(plan: Plan, ego: RobotPlan, chosen_here: bool, met: int) -> str:
     )
 
 
-def _curve(motion: VelocityProfile, end: float) -> tuple[np.ndarray, np.ndarray]:
+def _curve(motion: VelocityProfile, end: float) -> tuple[Array, Array]:
     t = np.concatenate([[0.0], np.linspace(motion.departure, motion.arrival, 600), [end]])
     return t, motion.state(t)[:, 0]

@@ -138,8 +138,9 @@ def points(ax: Axes, places: npt.ArrayLike) -> Array:
 
 def text_size(text: Text) -> tuple[float, float]:
     """Width and height of a text [pt]."""
-    box, dpi = text.get_window_extent(), figure_of(text.axes).dpi if text.axes else 72.0
-    return float(box.width * 72 / dpi), float(box.height * 72 / dpi)
+    box, figure = text.get_window_extent(), text.get_figure(root=True)
+    point = figure.dpi / 72 if figure is not None else 1.0
+    return float(box.width / point), float(box.height / point)
 
 
 def halo(width: float = 2.2) -> list[AbstractPathEffect]:

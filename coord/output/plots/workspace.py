@@ -73,7 +73,7 @@ def floor(problem: Problem, diagnoses: Sequence[Diagnosis] = (), ax: Axes | None
     colours = [colour(k) for k in range(len(flights))]
     ax.add_collection(LineCollection(flights, colors=colours, linewidths=0.9, linestyles=":", zorder=4), autolim=False)
     handles = [*draw_surroundings(ax, problem), *_draw_ends(ax, problem, strength)]
-    handles.append(Line2D([], [], color=GREY, lw=0.9, ls=":", label="from start to goal as the crow flies: no path"))
+    handles.append(Line2D([], [], color=GREY, lw=0.9, ls=":", label="from start to goal, not a path"))
     marks = [(diagnosis.place, diagnosis.code) for diagnosis in diagnoses if diagnosis.place is not None]
     for (x, y), _ in marks:
         ax.plot([x], [y], ls="none", marker="X", ms=9, mfc=ALARM, mec="white", mew=1.0, zorder=8)
@@ -92,7 +92,7 @@ def _axes(problem: Problem, ax: Axes | None) -> Axes:
         # the legend has its place beside the floor
         scale = _FLOOR / max(xmax - xmin, ymax - ymin)
         width, height = max((xmax - xmin) * scale, 2.0), max((ymax - ymin) * scale, 1.6)
-        ax = new_figure(width + 3.6, height + 1.1).add_subplot()
+        ax = new_figure(width + 3.8, height + 0.9).add_subplot()
     edge = _MARGIN * _point(problem)
     ax.set_xlim(xmin - edge, xmax + edge)
     ax.set_ylim(ymin - edge, ymax + edge)
@@ -129,13 +129,13 @@ def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[fl
     ax.add_collection(ways, autolim=False)
     heads: list[Array] = []
     fills = []
-    for k, path in enumerate(paths):
-        found = arrowheads(path, 6 * metre, 100 * metre)
+    for k, way in enumerate(lines):
+        found = arrowheads(way, 6 * metre, 100 * metre)
         heads += found
         fills += [colours[k]] * len(found)
     ax.add_collection(PolyCollection(heads, facecolors=fills, edgecolors="none", zorder=5), autolim=False)
     return [
-        Line2D([], [], color=GREY, lw=1.4, marker=">", ms=6, label="path of the robot's centre (shared ways: abreast)"),
+        Line2D([], [], color=GREY, lw=1.4, marker=">", ms=6, label="path of the centre (shared: side by side)"),
         Patch(facecolor=(GREY, 0.25), label="floor that the robot sweeps"),
     ]
 
@@ -167,8 +167,9 @@ def _draw_marks(ax: Axes, marks: list[GivesWay], names: list[str]) -> list[Artis
         name, other = mark.robot.robot.name, mark.other.robot.name
         ink = colour(names.index(name))
         ax.plot(*mark.place, mec=ink, zorder=8, path_effects=halo(3.2), **style)
-        told = f"here {shown(name, 16)} lets {shown(other, 16)} pass"
+        name, other = shown(name, 16), shown(other, 16)
+        told = f"here {name}{chr(10) if len(name + other) > 16 else ''} lets {other} pass"
         handles.append(Line2D([], [], mec=ink, label=told, **style))
     if len(handles) > MOST_TOLD:
-        return [Line2D([], [], mec=GREY, label="here the robot of this colour lets another pass", **style)]
+        return [Line2D([], [], mec=GREY, label="here this robot lets another pass", **style)]
     return handles
