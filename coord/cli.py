@@ -23,6 +23,7 @@ from coord.errors import BadFileError, Fault, InvalidValueError, NoPlanError, No
 if TYPE_CHECKING:
     from coord.model.options import Options
     from coord.model.problem import Problem
+    from coord.model.result import Result
 
 OK: Final = 0
 NO_PLAN: Final = 1
@@ -33,6 +34,9 @@ INTERRUPTED: Final = 130
 
 #: More faults than this are counted, not shown.
 MOST_FAULTS: Final = 50
+
+#: Commands whose names are taken and that later work brings.
+RESERVED: Final = ("view", "edit", "study", "compare", "import", "new", "explain")
 
 app = typer.Typer(
     help="Plan the motion of many robots on a floor, and certify every plan.",
@@ -103,14 +107,31 @@ def plan(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", metavar="OUTDIR", help="Where results go; plans/<name of PROBLEM>/.")
     ] = None,
-    method: Annotated[str | None, typer.Option(help="How the motion along the paths is found.")] = None,
-    shape: Annotated[str | None, typer.Option(help="What paths look like where they bend.")] = None,
-    order: Annotated[str | None, typer.Option(help="Who is planned first.")] = None,
-    profile: Annotated[str | None, typer.Option(help="fastest, or gentle.")] = None,
+    method: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Who gives way, and how. velocity: the later one, by its speed.")
+    ] = None,
+    shape: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME", help="How paths bend. fitted: as wide as pays (default); taut: shortest, lines and arcs."
+        ),
+    ] = None,
+    order: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Who is planned first. priority: yours, then who needs longest alone."),
+    ] = None,
+    profile: Annotated[
+        str | None, typer.Option(metavar="NAME", help="How robots drive. fastest: each arrives as early as it can.")
+    ] = None,
     time_limit: Annotated[float | None, typer.Option(metavar="S", help="Stop searching after this long [s].")] = None,
     gap_target: Annotated[float | None, typer.Option(metavar="G", help="Stop at this optimality gap.")] = None,
     seed: Annotated[int | None, typer.Option(metavar="N", help="For everything drawn at random.")] = None,
-    plots: Annotated[bool, typer.Option("--plots", help="Also draw workspace.png, profiles.png and st.png.")] = False,
+    plots: Annotated[
+        bool | None,
+        typer.Option(
+            "--plots/--no-plots", help="Also draw workspace.png, profiles.png, st.png; with no plan the first."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> int:
     """Plan the robots of PROBLEM.
@@ -142,12 +163,8 @@ def plan(
         result = make_plan(read, options, show)
     written = [files.save(folder, result)]
     found = summary.certified_plan(result)
-    if plots and found is not None:
-        from coord.output.plots import KINDS, draw
-
-        for kind in KINDS:
-            written.append(folder / f"{kind}.png")
-            files.write(written[-1], draw(found, kind))
+    if read.options.get("plots", False) if plots is None else plots:
+        written += _draw(folder, result)
     seconds = perf_counter() - started
     if as_json:
         _print_json(summary.record(result, seconds))
@@ -155,10 +172,11 @@ def plan(
         if result.diagnoses:
             _note(summary.paragraphs(result.diagnoses))
         if found is not None:
-            _print_table(summary.table(result, found, seconds))
+            _print_table(summary.table(result, found))
             _print("\n".join(f"written: {path}" for path in written))
         else:
-            _note(f"There is no {'certified ' if result.plan else ''}plan; the reasons are in {written[0]}")
+            kind = "certified plan" if result.plan else "plan"
+            _note(f"There is no {kind}; the reasons are in {' and '.join(map(str, written))}")
     return NO_PLAN if result.plan is None else OK if found is not None else NOT_CERTIFIED
 
 
@@ -252,15 +270,44 @@ def export(
     return OK
 
 
+def _not_yet() -> None:
+    raise typer.Exit(_complain(["this command is not supported yet; see coord --help"], BAD_INPUT))
+
+
+for _name in RESERVED:
+    app.command(
+        _name,
+        hidden=True,
+        add_help_option=False,
+        context_settings={"ignore_unknown_options": True, "allow_extra_args": True},
+    )(_not_yet)
+
+
+def _draw(folder: Path, result: Result) -> list[Path]:
+    """Write the pictures of a plan, or that of the floor where there is none; of a refused plan there is no picture."""
+    from coord.output import files
+    from coord.output.plots import KINDS, draw, draw_failure
+
+    pictures: dict[str, bytes] = {}
+    if result.plan is None:
+        pictures["workspace"] = draw_failure(result)
+    elif result.certified:
+        pictures = {kind: draw(result.plan, kind) for kind in KINDS}
+    for kind, data in pictures.items():
+        files.write(folder / f"{kind}.png", data)
+    return [folder / f"{kind}.png" for kind in pictures]
+
+
 def _options(file: Path, problem: Problem, **flags: object) -> Options:
     """The options of the file, overruled by the flags that were given; faults say which of the two is wrong."""
     from coord.model.options import Options
 
     given = {name: value for name, value in flags.items() if value is not None}
-    unknown = problem.options.keys() - flags.keys()
+    table = {name: value for name, value in problem.options.items() if name != "plots"}
+    unknown = table.keys() - flags.keys()
     if unknown:
         raise BadFileError(Fault(str(file), None, "[plan]", f"unknown option {name}") for name in sorted(unknown))
-    merged: Mapping[str, Any] = {**problem.options, **given}
+    merged: Mapping[str, Any] = {**table, **given}
     try:
         return Options(**merged)
     except InvalidValueError as error:

@@ -1,5 +1,6 @@
 import csv
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,8 +12,8 @@ from typing import Any
 import pytest
 
 from coord.alone.fastest import fastest, solo_bound
-from coord.cli import MOST_FAULTS, main
-from coord.errors import BadFileError, Fault
+from coord.cli import MOST_FAULTS, RESERVED, main
+from coord.errors import BadFileError, Fault, InvalidValueError
 from coord.model.options import Options
 from coord.model.path import straight
 from coord.model.problem import Problem
@@ -197,6 +198,63 @@ def test_pictures_are_drawn_when_asked_for(coord: Any, planner: Any, problem: Pa
     assert names == ["plan.json", "profiles.png", "st.png", "workspace.png"]
 
 
+def test_without_a_plan_only_the_floor_is_drawn(coord: Any, planner: Any, problem: Path, tmp_path: Path):
+    """Exit code 1 and one picture, to read the diagnosis with; nothing else is written, and without asking neither."""
+    planner(impossible)
+    answer = coord("plan", problem, "-o", "out", "--plots")
+    assert (answer.code, answer.out) == (1, "")
+    assert sorted(file.name for file in (tmp_path / "out").iterdir()) == ["diagnosis.json", "workspace.png"]
+    assert "workspace.png" in answer.err
+    coord("plan", problem, "-o", "other")
+    assert [file.name for file in (tmp_path / "other").iterdir()] == ["diagnosis.json"]
+
+
+def test_a_problem_can_ask_for_pictures_and_the_command_line_can_decline(
+    coord: Any, planner: Any, problem: Path, tmp_path: Path
+):
+    """plots = true in [plan] is the flag --plots; --no-plots wins over it."""
+    planner(certified)
+    problem.write_text(PROBLEM + "[plan]\nplots = true\n")
+    assert coord("plan", problem, "-o", "out").code == 0
+    assert (tmp_path / "out/st.png").exists()
+    assert coord("plan", problem, "-o", "none", "--no-plots").code == 0
+    assert [file.name for file in (tmp_path / "none").iterdir()] == ["plan.json"]
+
+
+def test_a_bad_value_in_the_table_of_options_names_the_file(coord: Any, planner: Any, problem: Path):
+    """Unlike one of the command line, which names the flag."""
+    planner(certified)
+    problem.write_text(PROBLEM + '[plan]\norder = "curly"\n')
+    answer = coord("plan", problem)
+    assert (answer.code, answer.out) == (2, "")
+    assert answer.err.startswith(f"{problem}: [plan]: order ")
+    assert coord("plan", problem, "--order", "priority").code == 0
+
+
+def test_the_help_of_plan_lists_the_values_that_are_supported_and_no_others(coord: Any):
+    """The sentence that refuses an unknown value names the same ones."""
+    text = coord("plan", "--help").out
+    rest = {"stop", "nearest", "exponential", "follow", "heading", "random", "search", "gentle"}
+    assert rest & set(re.findall(r"\w+", text)) == set()
+    for option in ("method", "shape", "order", "profile"):
+        with pytest.raises(InvalidValueError) as refused_value:
+            Options(**{option: "?"})  # type: ignore[arg-type]
+        described = text[text.index(f"--{option} NAME") :].split(" --", 1)[0]
+        known = re.findall(r'"(\w+)"', str(refused_value.value).split("it can be")[1])
+        assert known, option
+        assert all(f"{name}" in described for name in known), (option, known)
+
+
+@pytest.mark.parametrize("command", RESERVED)
+def test_commands_to_come_say_so(coord: Any, command: str, tmp_path: Path):
+    """Exit code 2 and a sentence, whatever follows; no other command is suggested, and nothing is written."""
+    for rest in ([], ["x.toml", "-o", "y"], ["--help"]):
+        answer = coord(command, *rest)
+        assert (answer.code, answer.out) == (2, "")
+        assert "not supported yet" in answer.err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_command_line_wins_over_the_table_of_the_problem(coord: Any, planner: Any, problem: Path):
     """What neither says has its default."""
     seen = []
@@ -209,7 +267,8 @@ def test_the_command_line_wins_over_the_table_of_the_problem(coord: Any, planner
     problem.write_text(PROBLEM + '[plan]\nshape = "taut"\nseed = 5\ntime_limit = 7.5\n')
     coord("plan", problem)
     coord("plan", problem, "--seed", "9", "--gap-target", "0.01")
-    assert seen == [Options(seed=5, time_limit=7.5), Options(seed=9, time_limit=7.5, gap_target=0.01)]
+    table = Options(shape="taut", seed=5, time_limit=7.5)
+    assert seen == [table, replace(table, seed=9, gap_target=0.01)]
 
 
 def test_an_option_that_is_not_supported_names_the_flag_or_the_table(coord: Any, planner: Any, problem: Path):

@@ -31,6 +31,9 @@ _GROWTH = 1.5
 #: [s] Longest cell where no window is, and where one is.
 _LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
 
+#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow.
+_MESHES = (1.0, 0.4)
+
 #: [s] The search for the arrival ends when it rises by less than this.
 _ARRIVAL_STEP = 2e-3
 
@@ -53,16 +56,35 @@ def through_tube(ego: Ego, tube: Tube, least: float, most: float) -> VelocityPro
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
 
     ``least`` must not be later than the best arrival there is. The profile keeps the limits (checked
-    exactly); whether it is clear of the windows the caller checks.
+    exactly); whether it is clear of the windows the caller checks. A tight tube may be too narrow for the
+    bounds on a coarse grid, so a finer one is tried where the coarse one finds nothing.
     """
-    departure = _departure(ego, tube)
-    limits = _tightened(ego.robot.limits)
-    if _reach(ego, tube, limits, departure, most) < 0:
+    for mesh in _MESHES:
+        profile = _through(_Attempt(ego, tube, _tightened(ego.robot.limits), _departure(ego, tube), mesh), least, most)
+        if profile is not None:
+            return profile
+    return None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Attempt:
+    """A tube on one mesh: limits a little tightened, cells scaled by ``mesh``."""
+
+    ego: Ego
+    tube: Tube
+    limits: Limits
+    departure: float
+    mesh: float
+
+
+def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | None:
+    ego = attempt.ego
+    if _reach(attempt, most) < 0:
         return None
-    arrival = max(least, departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
+    arrival = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
     while True:
-        lack = -_reach(ego, tube, limits, departure, arrival)
-        step = min(max(lack, 0.0), 10 * ego.length) / limits.speed
+        lack = -_reach(attempt, arrival)
+        step = min(max(lack, 0.0), 10 * ego.length) / attempt.limits.speed
         if step <= _ARRIVAL_STEP:
             break
         arrival += step
@@ -71,7 +93,7 @@ def through_tube(ego: Ego, tube: Tube, least: float, most: float) -> VelocityPro
             break
     for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
         at = min(arrival + step + pause, most)
-        profile = _smooth(ego, tube, limits, departure, at)
+        profile = _smooth(attempt, at)
         if profile is not None:
             return profile
         if at == most:
@@ -79,27 +101,29 @@ def through_tube(ego: Ego, tube: Tube, least: float, most: float) -> VelocityPro
     return None
 
 
-def _reach(ego: Ego, tube: Tube, limits: Limits, departure: float, arrival: float) -> float:
+def _reach(attempt: _Attempt, arrival: float) -> float:
     """How far beyond its goal [m] the robot could rest at the arrival; negative where it cannot get there."""
-    cells = _cells(ego, tube, limits, departure, arrival)
-    reached = None if cells is None else farthest(cells, limits)
-    return -np.inf if reached is None else reached - ego.length
+    cells = _cells(attempt, arrival)
+    reached = None if cells is None else farthest(cells, attempt.limits)
+    return -np.inf if reached is None else reached - attempt.ego.length
 
 
-def _smooth(ego: Ego, tube: Tube, limits: Limits, departure: float, arrival: float) -> VelocityProfile | None:
-    cells = _cells(ego, tube, limits, departure, arrival)
-    jerks = None if cells is None else smoothest(cells, limits, ego.length)
+def _smooth(attempt: _Attempt, arrival: float) -> VelocityProfile | None:
+    ego = attempt.ego
+    cells = _cells(attempt, arrival)
+    jerks = None if cells is None else smoothest(cells, attempt.limits, ego.length)
     if cells is None or jerks is None:
         return None
-    profile = land_exactly(cells.h, jerks, ego.length, departure)
+    profile = land_exactly(cells.h, jerks, ego.length, attempt.departure)
     if profile is None or not keeps_limits(profile, ego.robot.limits, ego.caps):
         return None
     return profile
 
 
-def _cells(ego: Ego, tube: Tube, limits: Limits, departure: float, arrival: float) -> Cells | None:
+def _cells(attempt: _Attempt, arrival: float) -> Cells | None:
     """The grid up to an arrival with the tube's bounds on it; None where the grid would be too large."""
-    times = _grid(tube, limits, departure, arrival)
+    ego, tube, limits = attempt.ego, attempt.tube, attempt.limits
+    times = _grid(attempt, arrival)
     if times is None:
         return None
     n = len(times) - 1
@@ -111,22 +135,21 @@ def _cells(ego: Ego, tube: Tube, limits: Limits, departure: float, arrival: floa
     return Cells(np.diff(times), upper, lower, np.full(n, limits.speed))
 
 
-def _grid(tube: Tube, limits: Limits, departure: float, arrival: float) -> Array | None:
+def _grid(attempt: _Attempt, arrival: float) -> Array | None:
     """Time knots at the tube's events, dense behind and before each, as many as a size of program has."""
-    taken = [(bound.times[0], bound.times[-1]) for bound in (*tube.upper, *tube.lower)]
-    events = {departure, arrival}
-    events |= {float(t) for bound in tube.upper for t in (bound.times[0], bound.times[-1])}
-    events |= {float(t) for bound in tube.lower for t in (bound.times[0], bound.times[-1])}
+    limits, departure, bounds = attempt.limits, attempt.departure, (*attempt.tube.upper, *attempt.tube.lower)
+    taken = [(float(bound.times[0]), float(bound.times[-1])) for bound in bounds]
+    events = {departure, arrival, *(t for span in taken for t in span)}
     knots = sorted(t for t in events if departure <= t <= arrival)
-    first = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02)
+    shortest = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02) * attempt.mesh
     times = [departure]
     for start, end in itertools.pairwise(knots):
         if end - start < 1e-6:  # two events at once
             times[-1] = end if len(times) > 1 else times[-1]
             continue
         middle = (start + end) / 2
-        longest = _LONGEST_TAKEN if any(a < middle < b for a, b in taken) else _LONGEST_FREE
-        times += _graded(start, end, min(first, longest), longest)
+        longest = (_LONGEST_TAKEN if any(a < middle < b for a, b in taken) else _LONGEST_FREE) * attempt.mesh
+        times += _graded(start, end, min(shortest, longest), longest)
     size = next((size for size in SIZES if size >= len(times) - 1), None)
     if size is None:
         return None

@@ -126,7 +126,9 @@ def _between(profile: VelocityProfile, start: float, end: float) -> VelocityProf
     """The part of a profile between two times, which become knots; a single knot where nothing lies between."""
     if end - start <= SHORTEST_PHASE:
         return VelocityProfile(frozen([start]), profile.state([start]), frozen([]))
-    inside = profile.times[(profile.times > start + SHORTEST_PHASE) & (profile.times < end - SHORTEST_PHASE)]
-    times = np.concatenate([[start], inside, [end]])
+    inside = (profile.times > start + SHORTEST_PHASE) & (profile.times < end - SHORTEST_PHASE)
+    ends = profile.state([start, end])
+    last = profile.states[-1:] if end >= profile.arrival else ends[1:]  # rest is rest, to the last digit
+    times = np.concatenate([[start], profile.times[inside], [end]])
     phase = np.searchsorted(profile.times, (times[:-1] + times[1:]) / 2, side="right") - 1
-    return VelocityProfile(times, profile.state(times), profile.jerks[phase])
+    return VelocityProfile(times, np.concatenate([ends[:1], profile.states[inside], last]), profile.jerks[phase])

@@ -1,5 +1,6 @@
 import io
 from collections.abc import Callable
+from dataclasses import replace
 
 from rich.console import Console
 
@@ -24,7 +25,7 @@ KEYS = [
 
 def shown(result: Result, plan: Plan) -> str:
     stream = io.StringIO()
-    Console(file=stream, width=120).print(table(result, plan, 1.234))
+    Console(file=stream, width=120).print(table(result, plan))
     return stream.getvalue()
 
 
@@ -74,11 +75,27 @@ def test_one_robot_has_no_least_clearance(parked: Plan, result_of: Callable[...,
 
 
 def test_the_table_says_every_figure_with_its_unit(sample: Plan, result_of: Callable[..., Result]):
-    """45.69 s in all, 4.50 s of delay for three robots, and the rest."""
-    text = shown(result_of(sample), sample)
+    """45.69 s in all, 4.50 s of delay for three robots, all of it blue's, and the rest."""
+    text = shown(replace(result_of(sample), seconds=1.234), sample)
     expected = ["3 of 3", f"{sample.sum_of_arrivals:.2f} s", "20.00 s", "1.50 s", "0.0500 m", "red and blue at 6.25 s"]
     expected += [f"{sample.lower_bound:.2f} s", f"{100 * sample.optimality_gap:.2f} %", "1.23 s", "single robots"]
     assert [part for part in expected if part not in text] == []
+    (largest,) = (line for line in text.splitlines() if "largest delay" in line)
+    assert largest.split()[2:] == ["4.50", "s", "blue"]
+
+
+def test_a_bound_from_single_robots_says_what_it_leaves_out(sample: Plan, result_of: Callable[..., Result]):
+    """So that a gap of 20 % does not read as a bad plan."""
+    alone = replace(sample, lower_bound_by="solo_bound")
+    text = shown(result_of(alone), alone)
+    assert "ignores the others" in text
+    assert "perhaps much less" in text
+    assert "solo_bound" not in text
+
+
+def test_where_nobody_is_delayed_nobody_is_named(parked: Plan, result_of: Callable[..., Result]):
+    """The largest of no delays belongs to nobody."""
+    assert "nobody is delayed" in shown(result_of(parked), parked)
 
 
 def test_a_clearance_is_never_shown_larger_than_it_is(sample: Plan, result_of: Callable[..., Result]):

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coord.alone.fastest import fastest
+from coord.alone.inverse import time_at
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Footprint, Limits, Robot
 from coord.plan import plan
@@ -31,7 +32,7 @@ def crossing(limits, radius=0.3, arm=10.0):
     )
 
 
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(deadline=None, derandomize=True, max_examples=25)
 @given(st.floats(0.3, 2.0), st.floats(0.3, 2.0), st.floats(0.5, 4.0), st.floats(0.1, 0.6))
 def test_at_a_right_angle_the_second_loses_root_two_times_the_distance_over_the_speed(speed, acceleration, jerk, radius):
     """Both cruise at v; d later the distance is at least v d / sqrt(2): the delay is sqrt(2) R / v, within 1 %."""
@@ -69,8 +70,9 @@ def test_following_on_one_line_keeps_the_distance():
     assert found.robots[1].arrival == found.robots[1].solo_arrival
     slow = dataclasses.replace(robots[0], limits=dataclasses.replace(limits, speed=0.5))
     behind = plan(Problem("p", LARGE, (slow, robots[1]))).plan
-    # at 1/2 m/s the first is at its goal last; the second must stay 0.65 m behind and then come to rest
-    assert behind.robots[0].arrival <= behind.robots[1].arrival <= behind.robots[0].arrival + 1.0
+    first, second = behind.robots
+    # the second may be at 29 m only once the first, at 1/2 m/s, has passed 29.65 m
+    assert time_at(first.profile, 29.65)[0] <= second.arrival <= first.arrival
 
 
 def test_a_quicker_robot_passes_before_a_slow_one():
@@ -156,7 +158,7 @@ def arrivals(problem):
     return None if found.plan is None else np.array([one.arrival for one in found.plan.robots])
 
 
-SEEDS = range(10)
+SEEDS = range(6)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

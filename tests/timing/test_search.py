@@ -27,11 +27,18 @@ def test_at_a_crossroads_nobody_could_be_one_percent_earlier(crossroads, could_a
             assert not could_arrive(found, one.robot.name, 0.99 * one.arrival)
 
 
-LATE = "timing/program.py tries one grid only; a tight before bound makes it infeasible (up to 10 % later than needed)"
+@pytest.mark.parametrize("seed", [60, 162, 218])
+def test_little_to_spare_before_somebody_needs_a_finer_grid_and_gets_it(lanes, could_arrive, seed):
+    """Scenes on which one coarse grid found no motion through the gap, and 3 to 5 % were lost."""
+    found = plan(lanes(seed)).plan
+    assert not could_arrive(found, "ego", 0.985 * found.robots[-1].arrival)
 
 
-@pytest.mark.xfail(strict=True, reason=LATE)
-@pytest.mark.parametrize("seed", [60, 218, 297])
+LATE = "no grid of timing/program.py fits before bounds with a hundredth of a second to spare (up to 10 % later than needed)"
+
+
+
+@pytest.mark.parametrize("seed", [60, 218, pytest.param(297, marks=pytest.mark.xfail(strict=True, reason=LATE))])
 def test_a_narrow_gap_before_somebody_is_used(lanes, could_arrive, seed):
     """Where passing before the first and after the next is possible with little to spare, it is found within 2 %."""
     found = plan(lanes(seed)).plan

@@ -61,14 +61,22 @@ def test_joined_searches_keep_the_better_place_and_the_first_open_one():
     assert joined(Least(1.0, 4.0, 5.0), Least(0.5, 7.0, 6.0)) == Least(0.5, 7.0, 5.0)
 
 
-def test_what_is_left_open_is_not_certified(build, monkeypatch):
-    """With three halvings allowed, two robots side by side in a bend are neither certified nor refused."""
+@pytest.mark.parametrize("parked", [False, True])
+def test_what_is_left_open_is_not_certified(build, monkeypatch, parked):
+    """With three halvings allowed, two robots close to each other in bends are neither certified nor refused."""
 
     def circling(name, radius):
         limits = {key: value * radius / 2 for key, value in build.limits.items()} | {"lateral_acceleration": 100.0}
         return build.robot(name, (0, -radius), pieces=[[radius, 1 / radius, 1 / radius]], limits=limits)
 
-    data = build.data(build.plan([circling("a", 2.0), circling("b", 2.6501)]))
+    pair = [circling("a", 2.0), circling("b", 2.6501)]
+    if parked:  # beside a clothoid, nearest in the middle of it
+        x, y = build.end_of([0.0, 0.0, 0.0], [[1.3, 0.0, 0.65]])
+        angle = 0.65 * 1.3 / 2
+        beside = (x + 0.65001 * math.sin(angle), y - 0.65001 * math.cos(angle))
+        pair = [build.robot("a", (0, 0), pieces=[[2.0, 0.0, 1.0]], limits={"lateral_acceleration": 100.0})]
+        pair.append(build.robot("b", beside, beside))
+    data = build.data(build.plan(pair))
     assert verify(data).verdict == "certified"
     monkeypatch.setattr(bisection, "HALVINGS", 3)
     report = verify(data)

@@ -46,7 +46,7 @@ def test_touching_exactly_is_certified_and_at_once_and_a_hair_less_is_refused(bu
         second = {
             "resting": lambda d=d: build.robot("b", place(5, d), place(5, d)),
             "passing": lambda d=d: build.robot("b", place(0, d), place(10, d)),
-            "meeting": lambda d=d: build.robot("b", place(10, d), place(0, d)),
+            "meeting": lambda d=d: build.robot("b", place(10, d), place(0, d), departure=0.37),
             "following": lambda d=d: build.robot("b", place(d, 0), place(10 + d, 0)),
             "overtaking": lambda d=d: build.robot("b", place(2, d), place(8, d), limits={"speed": 0.3}),
         }[way]()

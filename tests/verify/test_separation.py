@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coord.verify.approach import approach, inside_edge, resting
 from coord.verify.bisection import descend
 from coord.verify.curve import curve, point
 from coord.verify.motion import Stretch, arc_length, speed
@@ -85,23 +84,3 @@ def test_robots_that_come_close_between_two_equal_distances():
         for bound in (_linear(*pair, CENTRE, 0.0), _curved(*pair)):
             assert bound(0.0, 1.0)[0] <= least
             assert descend(bound, 0.0, 1.0, 0.0, 9.0).value == pytest.approx(least, abs=1e-6)
-
-
-@pytest.mark.parametrize("body", [disc(0.2), polygon([(-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2)], True)])
-@pytest.mark.parametrize("bend", [0.0, 0.3])
-def test_a_path_deep_inside_something_is_as_deep_as_it_is(body, bend):
-    """Far from its outline on all sides: the distance is negative, not that from the outline."""
-    path = curve((4.0, 5.0, 0.0), [(2.0, bend, bend)])
-    block = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
-    least = approach(path, body, (0.0, 2.0), block, 0.0, (0.05, 0.05))
-    depths = [resting(body, (*point(path.pieces[0], s), bend * s), block, 0.0) for s in (0.02 * i for i in range(101))]
-    assert least.value < -4.0
-    assert least.value == pytest.approx(min(depths), abs=1e-2)
-
-
-def test_the_edge_is_left_between_the_ends_of_a_bend():
-    """An arc that peaks at no simple share of its length."""
-    path = curve((0.0, 0.0, 0.4), [(1.0, -1.0, -1.0)])
-    least = inside_edge(path, disc(0.2), (0.0, 1.0), 0.4, 0.3)
-    assert least.value == pytest.approx(0.4 - 0.2 - (1 - math.cos(0.4)), abs=1e-6)
-    assert least.at == pytest.approx(0.4, abs=1e-2)

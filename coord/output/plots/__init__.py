@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 from coord.errors import InvalidValueError
-from coord.model.result import Plan
+from coord.model.result import Plan, Result
 from coord.output.plots.profiles import profiles
 from coord.output.plots.st import st
 from coord.output.plots.style import png
-from coord.output.plots.workspace import workspace
+from coord.output.plots.workspace import floor, workspace
 
-__all__ = ["KINDS", "draw", "profiles", "st", "workspace"]
+__all__ = ["KINDS", "draw", "draw_failure", "floor", "profiles", "st", "workspace"]
 
 #: What there is to draw.
 KINDS: Final = ("workspace", "profiles", "st")
@@ -35,3 +35,8 @@ def draw(plan: Plan, what: str, robot: str | None = None) -> bytes:
     if what not in kinds:
         raise InvalidValueError([("what", f'there is no picture "{what}"; there are {", ".join(KINDS)}')])
     return png(lambda: kinds[what](plan, robot))
+
+
+def draw_failure(result: Result) -> bytes:
+    """Draw the floor of a problem that has no plan as a PNG file, so that its diagnoses can be understood."""
+    return png(lambda: floor(result.problem, result.diagnoses))

@@ -22,7 +22,7 @@ _GAPS: Final = (1.5, 4.0, 9.0, 16.0)
 _FAR: Final = 8.0
 
 #: What it costs to lie over a start or goal, a mark, and (a line as long as the letters are high) paths and walls.
-_DISC, _MARK, _PATH, _WALL, _EDGE = 25.0, 15.0, 5.0, 2.5, 20.0
+_DISC, _MARK, _PATH, _WALL, _EDGE, _LINE = 25.0, 15.0, 5.0, 2.5, 20.0, 0.5
 
 
 class _Spot(NamedTuple):
@@ -123,7 +123,9 @@ def _clutter(ax: Axes, problem: Problem, lines: Sequence[Array], marks: Sequence
     xmin, ymin, xmax, ymax = problem.workspace.bounds
     edge = np.array([(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax), (xmin, ymin)])
     walls = [np.asarray(ring) for obstacle in problem.obstacles for ring in outline(obstacle).to_polygons()]
-    chains = [(edge, _EDGE), *((way, _PATH) for way in lines), *((ring, _WALL) for ring in walls)]
+    inset = min(radii) / metre + problem.workspace.clearance
+    line = edge + inset * np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)])
+    chains = [(edge, _EDGE), (line, _LINE), *((way, _PATH) for way in lines), *((ring, _WALL) for ring in walls)]
     segments = [_segments(points(ax, chain), cost) for chain, cost in chains if len(chain) > 1]
     inner = (frame[0, 0] + 2, frame[0, 1] + 2, frame[1, 0] - 2, frame[1, 1] - 2)
     table = np.array(discs, dtype=np.float64)

@@ -54,7 +54,7 @@ def profiles(plan: Plan, robot: str | None = None) -> Figure:
     title = f"{shown(plan.problem.name, 60) or 'Plan'}: how the robots drive, over time"
     figure.suptitle(title + note, x=0.01, ha="left", fontsize=11)
     released = any(plan.robots[k].robot.release > 0 for k in chosen)
-    figure.legend(handles=_legend(released), loc="outside lower left", ncols=4)
+    figure.legend(handles=_legend(released), loc="outside lower left", ncols=min(max(columns, 2), 4))
     return figure
 
 
@@ -70,7 +70,7 @@ def profile(robot: RobotPlan, axes: list[Axes], line_colour: str, end: float, la
     ):
         ax.axhline(low, color=ALARM, lw=0.7, zorder=1)
         ax.axhline(high, color=ALARM, lw=0.7, zorder=1)
-    ticks = MaxNLocator(nbins=5, steps=[1, 2, 5, 10]).tick_values(0.0, end)
+    ticks = np.asarray(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]).tick_values(0.0, end))
     for ax in axes:
         ax.axhline(0, color=GREY, lw=0.5, zorder=1)
         if release > 0:

@@ -133,15 +133,22 @@ def _write_names(
             path_effects=halo(),
         )
         text.set_in_layout(False)
-        rows, columns = np.nonzero(window.gap < 0.3 * window.gap.min())
-        step = max(1, len(rows) // 400)
-        centres = points(ax, np.column_stack([window.t[columns], window.s[rows]]))[::step]
-        depth = (window.gap[rows, columns] / window.gap.min())[::step]
-        labels.append(Label(centres, 6 * (1 - depth), text_size(text)))
+        labels.append(_label(ax, window, text_size(text)))
         texts.append(text)
     for text, label, chosen in zip(texts, labels, place(labels, clutter), strict=True):
         x, y = label.centres[chosen] * figure_of(ax).dpi / 72
         text.set_position(tuple(ax.transData.inverted().transform((x, y)).tolist()))
+
+
+def _label(ax: Axes, window: Window, size: tuple[float, float]) -> Label:
+    """Places for a name in its area, deep inside rather than at the border; in a narrow area it may stick out."""
+    rows, columns = np.nonzero(window.gap < 0.1 * window.gap.min())
+    step = max(1, len(rows) // 300)
+    centres = points(ax, np.column_stack([window.t[columns], window.s[rows]]))[::step]
+    depth = (window.gap[rows, columns] / window.gap.min())[::step]
+    aside = np.array([0.35 * size[0], 0.0])
+    places = np.concatenate([centres, centres - aside, centres + aside])
+    return Label(places, np.concatenate([6 * (1 - depth), 9 - 6 * depth, 9 - 6 * depth]), size)
 
 
 def _own_handles(ego: RobotPlan, free: VelocityProfile) -> list[Artist]:

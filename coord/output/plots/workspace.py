@@ -88,12 +88,12 @@ def floor(problem: Problem, diagnoses: Sequence[Diagnosis] = (), ax: Axes | None
 
 def _axes(problem: Problem, ax: Axes | None) -> Axes:
     xmin, ymin, xmax, ymax = problem.workspace.bounds
+    point = _point(problem)
+    edge = _MARGIN * point
     if ax is None:
-        # the legend has its place beside the floor
-        scale = _FLOOR / max(xmax - xmin, ymax - ymin)
-        width, height = max((xmax - xmin) * scale, 2.0), max((ymax - ymin) * scale, 1.6)
-        ax = new_figure(width + 3.8, height + 0.9).add_subplot()
-    edge = _MARGIN * _point(problem)
+        inch = 72 * point
+        width, height = (xmax - xmin + 2 * edge) / inch, (ymax - ymin + 2 * edge) / inch
+        ax = new_figure(width + 3.7, max(height, 2.2) + 0.85).add_subplot()  # the legend stands beside the floor
     ax.set_xlim(xmin - edge, xmax + edge)
     ax.set_ylim(ymin - edge, ymax + edge)
     ax.set_aspect("equal")
