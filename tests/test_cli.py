@@ -234,12 +234,12 @@ def test_a_bad_value_in_the_table_of_options_names_the_file(coord: Any, planner:
 def test_the_help_of_plan_lists_the_values_that_are_supported_and_no_others(coord: Any):
     """The sentence that refuses an unknown value names the same ones."""
     text = coord("plan", "--help").out
-    rest = {"stop", "nearest", "exponential", "follow", "heading", "random", "search", "gentle"}
-    assert rest & set(re.findall(r"\w+", text)) == set()
+    later = {"stop", "nearest", "exponential", "follow", "heading", "random", "search", "gentle"}
     for option in ("method", "shape", "order", "profile"):
         with pytest.raises(InvalidValueError) as refused_value:
             Options(**{option: "?"})  # type: ignore[arg-type]
         described = text[text.index(f"--{option} NAME") :].split(" --", 1)[0]
+        assert later & set(re.findall(r"\w+", described)) == set()
         known = re.findall(r'"(\w+)"', str(refused_value.value).split("it can be")[1])
         assert known, option
         assert all(f"{name}" in described for name in known), (option, known)

@@ -115,8 +115,8 @@ def _bound_text(by: str) -> str:
 
 
 def _gap_text(by: str) -> str:
-    text = "of the sum lies above the bound: no plan on these paths saves more"
-    return f"{text}, the best one perhaps much less" if by == "solo_bound" else text
+    text = "of the sum: no other plan on these paths saves more"
+    return f"{text}; some or all of it may be unavoidable" if by == "solo_bound" else text
 
 
 def _clearance_cells(clearance: Clearance | None, required: float) -> tuple[str, str]:

@@ -79,15 +79,16 @@ def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, 
 def _chain(ego: Ego, levels: list[tuple[float, float, float]], ending: float, share: float) -> VelocityProfile | None:
     """The alone profile through all levels, each joined by one arc; None where an arc does not exist."""
     current = ego.alone
+    earliest = current.departure
     for delay, s, kept_to in levels[1:]:
         target = ego.alone.shifted(delay)
         end = float(time_at(target, s)[0]) + ending
-        earliest = max(float(time_at(current, kept_to)[0]), current.departure)
+        earliest = max(float(time_at(current, kept_to)[0]), earliest)
         begin = end - (end - earliest) * share
         joined = _arc(ego, current, target, begin, min(end, target.arrival))
         if joined is None:
             return None
-        current = joined
+        current, earliest = joined, end
     return current
 
 
