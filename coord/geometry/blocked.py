@@ -26,7 +26,8 @@ class Floor:
         """Use ``rho`` (m,) [m] for the parts: a little more than needed, less near the start and the goal."""
         self.grown = grown
         self.rho = rho
-        self._tree = shapely.STRtree(_boxes(grown, rho))
+        self.boxes = _boxes(grown, rho)
+        self._tree = shapely.STRtree(self.boxes)
 
     def hit_parts(self, segments: Array) -> npt.NDArray[np.intp]:
         """Pairs (k, 2) of a segment's index and a part's, where segments (n, 4) come too near to a part."""
@@ -79,7 +80,26 @@ class Floor:
         at = center + radius * np.stack([np.cos(middle), np.sin(middle)], axis=1)
         inside = (_segment_distance(at, edges) < rho[None] - _TOUCH).any(axis=1) | _outside(at, self.grown.box)
         inside &= ends - cuts > _SLIVER
-        return np.stack([cuts[inside], ends[inside]], axis=1)
+        return _joined(cuts[inside], ends[inside])
+
+
+class Screen:
+    """Some parts of a floor, for testing many segments against them."""
+
+    def __init__(self, floor: Floor, parts: npt.NDArray[np.intp]) -> None:
+        """Index the chosen parts."""
+        self._parts, self._rho = floor.grown.parts[parts], floor.rho[parts]
+        self._tree = shapely.STRtree(floor.boxes[parts])
+
+    def is_hit(self, segments: Array) -> npt.NDArray[np.bool_]:
+        """Whether segments (n, 4) come too near to any of the parts."""
+        hit = np.zeros(len(segments), dtype=np.bool_)
+        if len(segments) and len(self._parts):
+            lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+            line, part = self._tree.query(lines, predicate="intersects")
+            near = shapely.dwithin(self._parts[part], lines[line], np.maximum(self._rho[part] - _TOUCH, 0.0))
+            hit[line[near]] = True
+        return hit
 
 
 def _boxes(grown: Grown, rho: Array) -> npt.NDArray[np.object_]:
@@ -87,6 +107,14 @@ def _boxes(grown: Grown, rho: Array) -> npt.NDArray[np.object_]:
         return np.empty(0, dtype=object)
     bounds = shapely.bounds(grown.parts)
     return np.asarray(shapely.box(*(bounds[:, :2] - rho[:, None]).T, *(bounds[:, 2:] + rho[:, None]).T))
+
+
+def _joined(starts: Array, ends: Array) -> Array:
+    """Stretches (k, 2) with those that follow each other without a gap made one."""
+    if not len(starts):
+        return np.empty((0, 2))
+    gap = starts[1:] > ends[:-1]
+    return np.stack([starts[np.append(True, gap)], ends[np.append(gap, True)]], axis=1)
 
 
 def _segment_angles(center: Array, radius: float, edges: Array, rho: Array) -> Array:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coord.geometry.blocked import Floor
+from coord.geometry.blocked import Floor, Screen
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import part_distances
 from coord.model.arrays import Array, Point
@@ -80,6 +80,20 @@ def search_floor(grown: Grown, start: Point, goal: Point) -> Floor:
     return Floor(grown, np.minimum(grown.rho + PLANNING_MARGIN, nearest))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tangents:
+    """Tangents from one disc: corners they lead to (-1: the goal), directions at both ends, end points (n, 2)."""
+
+    corners: npt.NDArray[np.intp]
+    leaving: Array
+    arriving: Array
+    starts: Array
+    ends: Array
+
+    def only(self, chosen: npt.NDArray[np.bool_]) -> _Tangents:
+        return _Tangents(*(getattr(self, name)[chosen] for name in self.__slots__))
+
+
 class _Search:
     """A* over tangents: a node is a corner with a side and the direction at which a tangent arrives."""
 
@@ -94,83 +108,75 @@ class _Search:
         self.side = np.tile([1.0, -1.0], len(chosen))
         self.first, self.span = np.repeat(corners.first[chosen], 2), np.repeat(corners.span[chosen], 2)
         self.start, self.goal = np.array(start), np.array(goal)
+        # where tangents may lead to: all corners, and last the goal, a disc of radius 0
+        self.to_places = np.vstack([self.places, self.goal])
+        self.to_radius, self.to_sides = np.append(self.radius, 0.0), np.append(self.side, 1.0)
+        self.to_first, self.to_span = np.append(self.first, 0.0), np.append(self.span, _TURN)
+        self.screen = Screen(floor, active)
         self.blocked: dict[int, Array] = {}
         self.expanded: dict[int, list[tuple[float, float]]] = {}
+        # length + distance left, number, length, previous node, direction in which it is left, corner, arrival
+        self.heap: list[tuple[float, int, float, int, float, int, float]] = []
+        self.pushed = 0
+        self.trail: list[tuple[int, float, int, float]] = []  # previous node, direction there, corner, arrival
 
     def run(self) -> Skeleton | None:
         """The shortest path among the active parts, or None."""
-        counter = 0
-        # entries: length + distance to go, number, length, previous entry, departure there, corner, arrival, segment
-        heap: list[tuple[float, int, float, int, float, int, float, tuple[float, float, float, float]]] = []
-        trail: list[tuple[int, float, int, float]] = []  # previous, departure there, corner, arrival
-
-        def push(
-            previous: int, length: float, leaving: float, corner: int, arriving: float, a: Array, b: Array
-        ) -> None:
-            nonlocal counter
-            along = math.hypot(b[0] - a[0], b[1] - a[1])
-            rest = math.hypot(self.goal[0] - b[0], self.goal[1] - b[1])
-            total = length + along
-            counter += 1
-            segment = (float(a[0]), float(a[1]), float(b[0]), float(b[1]))
-            heapq.heappush(heap, (total + rest, counter, total, previous, leaving, corner, arriving, segment))
-
-        push(-1, 0.0, 0.0, -1, 0.0, self.start, self.goal)
-        for corner, leaving, arriving, a, b in self._tangents(self.start, 0.0, 1.0):
-            push(-1, 0.0, leaving, corner, arriving, a, b)
-        while heap:
-            _, _, length, previous, leaving, corner, arriving, segment = heapq.heappop(heap)
-            if corner >= 0 and self._is_dominated(corner, arriving, length):
-                continue
-            if self._is_hit(segment):
-                continue
+        self._push(-1, 0.0, self._tangents(self.start, 0.0, 1.0))
+        while self.heap:
+            _, _, length, previous, leaving, corner, arriving = heapq.heappop(self.heap)
             if corner < 0:
-                return self._result(trail, previous, leaving, length)
+                return self._result(previous, leaving, length)
+            if self._is_dominated(corner, arriving, length):
+                continue
             self.expanded.setdefault(corner, []).append((arriving, length))
-            trail.append((previous, leaving, corner, arriving))
-            here = len(trail) - 1
+            self.trail.append((previous, leaving, corner, arriving))
             radius, side = float(self.radius[corner]), float(self.side[corner])
-            free = self._free_turn(corner, arriving)
-            for following, out, arrive, a, b in self._tangents(self.places[corner], radius, side, corner):
-                turn = _turn(side, arriving, out)
-                if turn <= free:
-                    push(here, length + radius * turn, out, following, arrive, a, b)
+            tangents = self._tangents(self.places[corner], radius, side, corner)
+            turn = _turns(side, arriving, tangents.leaving)
+            fits = turn <= self._free_turn(corner, arriving)
+            self._push(len(self.trail) - 1, length + radius * turn[fits], tangents.only(fits))
         return None
 
-    def _tangents(
-        self, center: Array, radius: float, side: float, own: int = -1
-    ) -> list[tuple[int, float, float, Array, Array]]:
-        """Tangents from a directed disc to all others and to the goal: corner (-1: goal), directions, ends."""
-        places = np.vstack([self.places, self.goal])
-        radii, sides = np.append(self.radius, 0.0), np.append(self.side, 1.0)
-        D = places - center
+    def _push(self, previous: int, length: Array | float, tangents: _Tangents) -> None:
+        """Queue the tangents that hit nothing, by the length up to their end and the distance left."""
+        segments = np.hstack([tangents.starts, tangents.ends])
+        free = ~self.screen.is_hit(segments)
+        along = np.hypot(*(tangents.ends - tangents.starts).T)
+        rest = np.hypot(*(self.goal - tangents.ends).T)
+        total = length + along
+        rows = zip(
+            (total + rest)[free].tolist(),
+            total[free].tolist(),
+            tangents.leaving[free].tolist(),
+            tangents.corners[free].tolist(),
+            tangents.arriving[free].tolist(),
+            strict=True,
+        )
+        for estimate, reached, leaving, corner, arriving in rows:
+            self.pushed += 1
+            heapq.heappush(self.heap, (estimate, self.pushed, reached, previous, leaving, corner, arriving))
+
+    def _tangents(self, center: Array, radius: float, side: float, own: int = -1) -> _Tangents:
+        """Tangents from a directed disc (own: its corner; -1: the start) to all others and to the goal."""
+        D = self.to_places - center
         far = np.hypot(D[:, 0], D[:, 1])
         with np.errstate(divide="ignore", invalid="ignore"):
-            a = (side * radius - sides * radii) / far
-        usable = (far > 0) & (np.abs(a) <= 1.0 + 1e-12)
-        if own >= 0:
-            usable &= (places != center).any(axis=1)
-        else:
-            usable[-1] = False
-        index = np.flatnonzero(usable)
-        a, D, far = np.clip(a[index], -1.0, 1.0), D[index], far[index]
+            a = (side * radius - self.to_sides * self.to_radius) / far
+        index = np.flatnonzero((far > 0) & (np.abs(a) <= 1.0 + 1e-12))
+        a, D, far, sides = np.clip(a[index], -1.0, 1.0), D[index], far[index], self.to_sides[index]
         n = (a[:, None] * D - np.sqrt(1 - a * a)[:, None] * np.stack([-D[:, 1], D[:, 0]], axis=1)) / far[:, None]
         leaving = np.arctan2(side * n[:, 1], side * n[:, 0])
-        arriving = np.arctan2(sides[index] * n[:, 1], sides[index] * n[:, 0])
-        first, span = np.append(self.first, 0.0)[index], np.append(self.span, _TURN)[index]
-        fits = _in_cone(arriving, first, span)
+        arriving = np.arctan2(sides * n[:, 1], sides * n[:, 0])
+        fits = _in_cone(arriving, self.to_first[index], self.to_span[index])
         if own >= 0:
             fits &= _in_cone(leaving, self.first[own], self.span[own])
-        starts = center + (side * radius) * n
-        ends = places[index] + (sides[index] * radii[index])[:, None] * n
+        ends = self.to_places[index] + (sides * self.to_radius[index])[:, None] * n
         xmin, ymin, xmax, ymax = self.floor.grown.box
         x, y = ends.T
         fits &= (x >= xmin - 1e-9) & (x <= xmax + 1e-9) & (y >= ymin - 1e-9) & (y <= ymax + 1e-9)
-        goal = len(self.places)
-        return [
-            (-1 if index[k] == goal else int(index[k]), float(leaving[k]), float(arriving[k]), starts[k], ends[k])
-            for k in np.flatnonzero(fits)
-        ]
+        corners = np.where(index == len(self.places), -1, index)
+        return _Tangents(corners, leaving, arriving, center + (side * radius) * n, ends).only(fits)
 
     def _is_dominated(self, corner: int, arriving: float, length: float) -> bool:
         """Whether somebody was here earlier along the turn, at no greater length, with the arc in between free."""
@@ -180,10 +186,6 @@ class _Search:
             if shorter + radius * turn <= length + _SAME_LENGTH and turn <= self._free_turn(corner, earlier):
                 return True
         return False
-
-    def _is_hit(self, segment: tuple[float, float, float, float]) -> bool:
-        hits = self.floor.hit_parts(np.array([segment]))
-        return bool(self.is_active[hits[:, 1]].any())
 
     def _free_turn(self, corner: int, arriving: float) -> float:
         """How far [rad] one can turn round a corner from a direction on until something is in the way."""
@@ -202,12 +204,10 @@ class _Search:
             free = min(free, ahead + 1e-9)
         return free
 
-    def _result(
-        self, trail: list[tuple[int, float, int, float]], previous: int, leaving: float, length: float
-    ) -> Skeleton:
+    def _result(self, previous: int, leaving: float, length: float) -> Skeleton:
         turns = []
         while previous >= 0:
-            before, left, corner, arriving = trail[previous]
+            before, left, corner, arriving = self.trail[previous]
             side = float(self.side[corner])
             center = (float(self.places[corner, 0]), float(self.places[corner, 1]))
             angle = _turn(side, arriving, leaving)
@@ -222,6 +222,12 @@ def _turn(side: float, first: float, last: float) -> float:
     """The angle in [0, 2 pi) from one direction to another, turning to a side; a hair short of a full turn is none."""
     angle = (side * (last - first)) % _TURN
     return 0.0 if angle > _TURN - 1e-9 else angle
+
+
+def _turns(side: float, first: float, last: Array) -> Array:
+    """``_turn`` for many directions."""
+    angle = (side * (last - first)) % _TURN
+    return np.asarray(np.where(angle > _TURN - 1e-9, 0.0, angle))
 
 
 def _in_cone(angle: Array, first: Array, span: Array) -> npt.NDArray[np.bool_]:

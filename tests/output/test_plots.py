@@ -12,11 +12,13 @@ from PIL import Image
 
 from coord.errors import InvalidValueError
 from coord.model.path import Path, straight
+from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, Result
 from coord.output.plots import KINDS, draw, draw_failure, floor, profiles, st, workspace
 from coord.output.plots.caps import speed_cap
-from coord.output.plots.forbidden import matters, windows
+from coord.output.plots.forbidden import Window, matters, passes, windows
 from coord.output.plots.giving_way import giving_way
+from coord.output.plots.labels import Clutter, Label, place
 from coord.output.plots.lanes import side_by_side
 from coord.output.plots.outlines import band, distance_field, line
 
@@ -137,7 +139,7 @@ def test_speeds_share_one_axis_unless_one_would_be_flat(sample: Plan, speeds: tu
     parts = []
     for part, speed in zip(sample.robots[:2], speeds, strict=True):
         limits = replace(part.robot.limits, speed=speed)
-        profile = replace(part.profile, states=part.profile.states * speed)
+        profile = replace(part.profile, states=part.profile.states * speed, jerks=part.profile.jerks * speed)
         parts.append(replace(part, robot=replace(part.robot, limits=limits), profile=profile))
     axes = profiles(replace(sample, robots=tuple(parts))).axes[::3]
     assert (axes[0].get_ylim() == axes[1].get_ylim()) is shared
@@ -170,6 +172,18 @@ def test_the_place_where_a_robot_gives_way_is_where_it_comes_closest(sample: Pla
     assert "here blue lets red pass" in [text.get_text() for text in legend.get_texts()]
 
 
+def test_a_name_takes_the_free_place_and_moves_for_another():
+    """Of two names the first likes the place best that the second needs; it ends elsewhere, off the line too."""
+    spots = np.array([(50.0, 50.0), (50.0, 80.0), (50.0, 20.0)])
+    picky = Label(spots[:1], np.zeros(1), (20.0, 10.0))
+    easy = Label(spots, np.array([0.0, 1.0, 2.0]), (20.0, 10.0))
+    clutter = Clutter((0.0, 0.0, 100.0, 100.0), np.empty((0, 4)), np.array([(0.0, 80.0, 100.0, 80.0, 5.0)]))
+    assert place([easy, picky], clutter) == [2, 0]
+    disc = np.array([(50.0, 20.0, 5.0, 100.0)])
+    assert place([easy, picky], clutter._replace(discs=disc)) == [1, 0]
+    assert place([easy, picky], clutter._replace(frame=(0.0, 40.0, 100.0, 100.0))) == [1, 0]
+
+
 def test_many_places_where_robots_give_way_are_marked_but_not_told(many: Plan):
     """Nine lines of legend would be too many; one says what the mark means."""
     late = tuple(replace(part, solo_arrival=part.arrival - 1.0, after=("agv-0",)) for part in many.robots[1:])
@@ -192,9 +206,9 @@ def test_names_on_the_floor_cover_neither_each_other_nor_the_discs_of_others(man
         height = np.minimum(others[:, 3], y1) - np.maximum(others[:, 1], y0)
         assert not np.any((width > 0) & (height > 0)), ax.texts[k].get_text()
         for robot in many.problem.robots:
-            for place in (robot.start, robot.goal):
-                x, y = ax.transData.transform(place)
-                assert not (x0 < x < x1 and y0 < y < y1), (ax.texts[k].get_text(), place)
+            for end in (robot.start, robot.goal):
+                x, y = ax.transData.transform(end)
+                assert not (x0 < x < x1 and y0 < y < y1), (ax.texts[k].get_text(), end)
 
 
 def test_paths_that_share_a_way_are_drawn_side_by_side_there_and_only_there():
@@ -237,6 +251,17 @@ def test_a_window_is_where_two_robots_are_too_close_and_nowhere_else(sample: Pla
     assert window.s[rows].max() == pytest.approx(3.0 + 0.65, abs=0.02)
     assert window.t[columns].min() < there < window.t[columns].max()
     assert window.gap.min() == pytest.approx(-0.65, abs=0.02)
+
+
+def test_a_robot_that_is_passed_twice_is_passed_on_both_sides(sample: Plan):
+    """What the motion does at each place of the area counts, not one word for all of it."""
+    red, blue = sample.robots[:2]
+    (window,) = windows(sample, blue, 20.0)
+    assert passes(window, blue.profile) == "passes after it"
+    assert passes(window, blue.profile.shifted(-60.0)) == "passes before it"
+    twice = Window(red, np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0]), np.array([[-1.0, 1.0, 1.0], [1.0, 1.0, -1.0]]))
+    steady = VelocityProfile([0.5, 1.5], [(0.0, 1.0, 0.0), (1.0, 1.0, 0.0)], [0.0])
+    assert passes(twice, steady) == "passes after and before it"
 
 
 def test_robots_that_leave_forbid_nothing_after_their_arrival(sample: Plan):

@@ -28,13 +28,23 @@ def test_a_function_that_holds_is_proved(least):
     assert descend(parabola(least), -1.0, 4.0, -1e-9, -1e-9) == Least(-1e-9, None, None)
 
 
-@pytest.mark.parametrize("least", [-1e-6, -0.5])
+@pytest.mark.parametrize("least", [-1e-7, -1e-6, -0.5])
 def test_a_function_that_fails_is_shown_failing(least):
     """With a place, and the worst value to within the resolution."""
     found = descend(parabola(least), -1.0, 4.0, -1e-9, -1e-9)
     assert found.value == pytest.approx(least, abs=5e-7)
-    assert found.value >= least
+    assert least <= found.value < -1e-9
     assert found.value == least + (found.at - 1) ** 2
+
+
+def test_a_miss_far_below_the_resolution_is_a_miss_all_the_same():
+    """The resolution is for the least value; what is needed is needed to the last digit."""
+
+    def exact(a, b):
+        f = [-1e-7 + 1e6 * (t - 1) ** 2 for t in (a, b, (a + b) / 2)]
+        return -1e-7 if a <= 1 <= b else min(f[:2]), f[2], (a + b) / 2
+
+    assert descend(exact, -1.0, 4.0, -1e-9, -1e-9).at == pytest.approx(1, abs=1e-6)
 
 
 def test_the_least_value_is_found_when_it_is_asked_for():

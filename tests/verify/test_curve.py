@@ -65,7 +65,7 @@ def sampled(arc, distance, n=400):
     return min(distance(place(arc, arc.length * i / n)) for i in range(n + 1))
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(arc=arcs, q=points)
 def test_the_distance_of_a_point_from_an_arc_is_the_least_of_all_samples(arc, q):
     """Never above a sample, and below the best of 400 by no more than their spacing explains; also where it says."""
@@ -75,7 +75,7 @@ def test_the_distance_of_a_point_from_an_arc_is_the_least_of_all_samples(arc, q)
     assert math.dist(place(arc, u), q) == pytest.approx(distance, abs=1e-9)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(arc=arcs, a=points, b=points)
 def test_the_distance_of_a_segment_from_an_arc_is_the_least_of_all_samples(arc, a, b):
     """The same for segments, crossing ones included, whose distance is 0."""

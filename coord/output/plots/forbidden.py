@@ -51,17 +51,29 @@ def matters(window: Window, motions: Sequence[VelocityProfile], end: float) -> b
 
     One that a motion passes long before and another long after did matter: it lies between them.
     """
+    s, first, last = _taken(window)
+    times = [time_at(motion, s) for motion in motions]
+    if min(float(np.min(np.maximum(first - t, t - last))) for t in times) < _NEAR * end:
+        return True
+    return len({bool(np.all(t > last)) for t in times}) > 1
+
+
+def passes(window: Window, motion: VelocityProfile) -> str:
+    """On which side of a window a motion goes by, in words; with a window of several parts it may be both."""
+    s, first, last = _taken(window)
+    t = time_at(motion, s)
+    after, before = bool(np.any(t >= last)), bool(np.any(t <= first))
+    if after and before:
+        return "passes after and before it" if t[0] >= last[0] else "passes before and after it"
+    return "passes after it" if after else "passes before it"
+
+
+def _taken(window: Window) -> tuple[Array, Array, Array]:
+    """Arc lengths (k,) [m] that the window forbids at some time, and the first and last such times (k,) [s]."""
     rows = np.nonzero((window.gap < 0).any(axis=1))[0]
     inside = window.gap[rows] < 0
-    first = window.t[np.argmax(inside, axis=1)]
-    last = window.t[-1 - np.argmax(inside[:, ::-1], axis=1)]
-    sides = set()
-    for motion in motions:
-        t = time_at(motion, window.s[rows])
-        if np.min(np.maximum(first - t, t - last)) < _NEAR * end:
-            return True
-        sides.add(bool(np.all(t > last)))
-    return len(sides) > 1
+    first, last = np.argmax(inside, axis=1), inside.shape[1] - 1 - np.argmax(inside[:, ::-1], axis=1)
+    return window.s[rows], window.t[first], window.t[last]
 
 
 def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: float) -> Window | None:

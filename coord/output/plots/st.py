@@ -15,7 +15,7 @@ from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.alone import alone
-from coord.output.plots.forbidden import Window, matters, windows
+from coord.output.plots.forbidden import Window, matters, passes, windows
 from coord.output.plots.labels import Clutter, Label, place
 from coord.output.plots.style import (
     GREY,
@@ -103,8 +103,8 @@ def _draw_window(ax: Axes, plan: Plan, ego: RobotPlan, window: Window, coloured:
     ax.contourf(window.t, window.s, window.gap, [-1e9, 0.0], **fill)
     if coloured:
         ax.contour(window.t, window.s, window.gap, [0.0], colors=[ink], linewidths=1.0, linestyles="solid", zorder=3)
-    way = ": passes after it" if name in ego.after else ": passes before it" if name in ego.before else ""
-    return Patch(facecolor=(ink, 0.45), edgecolor=ink, hatch=hatch(k), label=f"too close to {shown(name)}{way}")
+    label = f"too close to {shown(name)}: {passes(window, ego.profile)}"
+    return Patch(facecolor=(ink, 0.45), edgecolor=ink, hatch=hatch(k), label=label)
 
 
 def _write_names(

@@ -1,0 +1,94 @@
+"""One robot after the other: what the whole plan owes to the order."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from coord.model.problem import Problem, Workspace
+from coord.model.robot import Footprint, Limits, Robot
+from coord.plan import plan
+
+LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
+FLOOR = Workspace((-30.0, -30.0, 30.0, 30.0), 0.05)
+
+
+def robot(name, start, goal, **more):
+    return Robot(name, Footprint(0.3), LIMITS, start, goal, **more)
+
+
+def star(count, priorities=None):
+    """Robots whose ways all cross in the middle; nobody's start or goal lies on another's way."""
+    from math import cos, pi, sin
+
+    robots = []
+    for k in range(count):
+        c, s = 10 * cos(pi * k / count), 10 * sin(pi * k / count)
+        robots.append(robot(f"r{k}", (-c, -s), (c, s), priority=None if priorities is None else priorities[k]))
+    return Problem("star", FLOOR, tuple(robots))
+
+
+@pytest.mark.parametrize("priorities", [[1, 2, 3, 4, 5], [5, 4, 3, 2, 1], [2, 5, 1, 3, 4]])
+def test_priorities_are_the_order_where_nothing_forbids_it(priorities):
+    """The first drives as if alone, and is the only one who does."""
+    found = plan(star(5, priorities)).plan
+    assert list(found.order) == [f"r{k}" for k in sorted(range(5), key=lambda k: priorities[k])]
+    on_time = [one.robot.name for one in found.robots if one.arrival == one.solo_arrival]
+    assert on_time == [found.order[0]]
+
+
+def test_a_robot_in_the_way_goes_first_whatever_its_priority():
+    """The least urgent starts on the way of the most urgent: it leaves first, and the blocking arc says why."""
+    problem = Problem("p", FLOOR, (robot("late", (0.0, 0.0), (0.0, 9.0), priority=9.0), robot("early", (-9.0, 0.0), (9.0, 0.0), priority=1.0)))
+    found = plan(problem).plan
+    assert found.order == ("late", "early")
+    assert [(arc.first, arc.then, arc.at) for arc in found.blocking] == [("late", "early", "start")]
+
+
+def test_a_robot_that_parks_in_the_way_comes_last():
+    """The most urgent would park on the other's way: it is planned after it, and arrives when the other is past."""
+    problem = Problem("p", FLOOR, (robot("parks", (0.0, 9.0), (0.0, 0.0), priority=1.0), robot("passes", (-20.0, 0.0), (9.0, 0.0), priority=2.0)))
+    found = plan(problem).plan
+    assert found.order == ("passes", "parks")
+    parks, passes = found.robots
+    assert parks.arrival > 20.0
+    assert passes.arrival == passes.solo_arrival
+
+
+def test_a_convoy_moves_from_its_head():
+    """Ten robots in a row, all going 20 m ahead, the last one with the highest priority: the head leaves first."""
+    robots = tuple(robot(f"r{k}", (-1.0 * k, 0.0), (20.0 - 1.0 * k, 0.0), priority=float(10 - k)) for k in range(10))
+    found = plan(Problem("convoy", FLOOR, robots)).plan
+    assert list(found.order) == [f"r{k}" for k in range(10)]
+
+
+def test_nobody_leaves_before_its_release():
+    """Departure and solo arrival count from it; the sum of solo arrivals contains it."""
+    problem = star(4)
+    released = tuple(dataclasses.replace(one, release=3.0 * k) for k, one in enumerate(problem.robots))
+    found = plan(dataclasses.replace(problem, robots=released)).plan
+    for k, one in enumerate(found.robots):
+        assert one.profile.departure >= 3.0 * k
+        assert one.solo_arrival == pytest.approx(22.5 + 3.0 * k)
+
+
+def test_a_robot_at_its_goal_arrives_at_its_release_and_is_an_obstacle():
+    """Beside the way it disturbs nobody; on the way it blocks, and is named."""
+    goes = robot("goes", (-9.0, 0.0), (9.0, 0.0))
+    beside = plan(Problem("p", FLOOR, (robot("rests", (0.0, 0.7), (0.0, 0.7), release=2.5), goes))).plan
+    assert [one.arrival for one in beside.robots] == [2.5, pytest.approx(20.5)]
+    on_it = plan(Problem("p", FLOOR, (robot("rests", (0.0, 0.5), (0.0, 0.5)), goes)))
+    assert on_it.plan is None
+    assert on_it.diagnoses[0].code == "blocking-cycle"
+    assert set(on_it.diagnoses[0].robots) == {"rests", "goes"}
+
+
+def test_robots_that_swap_places_on_one_line_are_named_with_both_places():
+    """No order helps: exit with a sentence, no plan, no document."""
+    result = plan(Problem("swap", FLOOR, (robot("a", (-5.0, 0.0), (5.0, 0.0)), robot("b", (5.0, 0.0), (-5.0, 0.0)))))
+    assert (result.plan, result.certified, result.document) == (None, False, b"")
+    (diagnosis,) = result.diagnoses
+    assert diagnosis.code == "blocking-cycle"
+    assert '"a"' in diagnosis.text
+    assert '"b"' in diagnosis.text
