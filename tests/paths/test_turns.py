@@ -36,7 +36,7 @@ def test_the_curve_touches_its_disc_in_the_middle_and_joins_both_tangents(half, 
     assert distance[250] == pytest.approx(rho, abs=1e-7 * (1 + radius))
     # the foot of the centre on the second tangent lies a lead-in behind the curve's end
     c, s = math.cos(turn), side * math.sin(turn)
-    foot = (m * abs(s) * 1.0 if False else m * math.sin(turn), -side * m * math.cos(turn))
+    foot = (m * math.sin(turn), -side * m * math.cos(turn))
     assert curve.end == pytest.approx((foot[0] + lead * c, foot[1] + lead * s), abs=1e-7 * (1 + radius))
     assert np.abs(curve.pieces[:, 1:]).max() == pytest.approx(1 / radius)
 

@@ -122,8 +122,9 @@ def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[fl
     bands = [band(path, robot.footprint.radius) for path, robot in zip(paths, problem.robots, strict=True)]
     ax.add_collection(PolyCollection(bands, facecolors=fills, edgecolors="none", zorder=2), autolim=False)
     lines: list[Array] = [line(path)[:, :2] for path in paths]
-    if count <= MOST_NAMES:
-        lines = side_by_side(paths, _LANE * metre)
+    lanes = side_by_side(paths, _LANE * metre) if count <= MOST_NAMES else lines
+    shared = any(len(way) != len(lane) for way, lane in zip(lines, lanes, strict=True))
+    lines = lanes
     styles = [dashes(k) for k in range(count)]
     ways = LineCollection(lines, colors=colours, linewidths=1.4, linestyles=styles, zorder=4, path_effects=halo(2.4))
     ax.add_collection(ways, autolim=False)
@@ -134,8 +135,9 @@ def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[fl
         heads += found
         fills += [colours[k]] * len(found)
     ax.add_collection(PolyCollection(heads, facecolors=fills, edgecolors="none", zorder=5), autolim=False)
+    told = "path of the centre" + (" (shared: side by side)" if shared else "")
     return [
-        Line2D([], [], color=GREY, lw=1.4, marker=">", ms=6, label="path of the centre (shared: side by side)"),
+        Line2D([], [], color=GREY, lw=1.4, marker=">", ms=6, label=told),
         Patch(facecolor=(GREY, 0.25), label="floor that the robot sweeps"),
     ]
 
