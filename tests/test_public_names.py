@@ -16,7 +16,9 @@ import coord.verify
 
 def test_importing_coord_loads_nothing_heavy():
     """Neither an optimiser nor pictures nor numpy, until a name that needs them is used."""
-    code = "import sys, coord; sys.exit(bool({'casadi', 'ruckig', 'matplotlib', 'numpy', 'shapely'} & set(sys.modules)))"
+    code = (
+        "import sys, coord; sys.exit(bool({'casadi', 'ruckig', 'matplotlib', 'numpy', 'shapely'} & set(sys.modules)))"
+    )
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -21,7 +21,7 @@ def _wander(rng, limits, phases):
         reserve = after[2] * abs(after[2]) / (2 * limits.jerk)
         lowest = min(after[1], v, v - a * a / (2 * j) if j > 0 > a and -a / j < h else v)
         highest = max(after[1], v, v - a * a / (2 * j) if j < 0 < a and -a / j < h else v)
-        fits = -limits.deceleration <= after[2] <= limits.acceleration and 0 <= lowest and highest <= limits.speed
+        fits = -limits.deceleration <= after[2] <= limits.acceleration and lowest >= 0 and highest <= limits.speed
         if not (fits and 0 <= after[1] + reserve <= limits.speed):
             if a == 0 and v == 0:
                 j = 0.0

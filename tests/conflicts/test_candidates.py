@@ -37,7 +37,9 @@ def test_every_pair_that_comes_near_is_a_candidate(wild_path):
 def test_pairs_come_once_in_ascending_order():
     """The smaller index first; nobody meets itself, though its own chunks touch."""
     lines = [straight((0, k / 10), (30, k / 10)) for k in range(5)]
-    assert candidate_pairs([chords(line) for line in lines], [0.2] * 5) == [(i, k) for i in range(5) for k in range(i + 1, 5)]
+    assert candidate_pairs([chords(line) for line in lines], [0.2] * 5) == [
+        (i, k) for i in range(5) for k in range(i + 1, 5)
+    ]
 
 
 def test_a_robot_alone_meets_nobody():

@@ -40,7 +40,11 @@ def test_priorities_are_the_order_where_nothing_forbids_it(priorities):
 
 def test_a_robot_in_the_way_goes_first_whatever_its_priority():
     """The least urgent starts on the way of the most urgent: it leaves first, and the blocking arc says why."""
-    problem = Problem("p", FLOOR, (robot("late", (0.0, 0.0), (0.0, 9.0), priority=9.0), robot("early", (-9.0, 0.0), (9.0, 0.0), priority=1.0)))
+    problem = Problem(
+        "p",
+        FLOOR,
+        (robot("late", (0.0, 0.0), (0.0, 9.0), priority=9.0), robot("early", (-9.0, 0.0), (9.0, 0.0), priority=1.0)),
+    )
     found = plan(problem).plan
     assert found.order == ("late", "early")
     assert [(arc.first, arc.then, arc.at) for arc in found.blocking] == [("late", "early", "start")]
@@ -48,7 +52,11 @@ def test_a_robot_in_the_way_goes_first_whatever_its_priority():
 
 def test_a_robot_that_parks_in_the_way_comes_last():
     """The most urgent would park on the other's way: it is planned after it, and arrives when the other is past."""
-    problem = Problem("p", FLOOR, (robot("parks", (0.0, 9.0), (0.0, 0.0), priority=1.0), robot("passes", (-20.0, 0.0), (9.0, 0.0), priority=2.0)))
+    problem = Problem(
+        "p",
+        FLOOR,
+        (robot("parks", (0.0, 9.0), (0.0, 0.0), priority=1.0), robot("passes", (-20.0, 0.0), (9.0, 0.0), priority=2.0)),
+    )
     found = plan(problem).plan
     assert found.order == ("passes", "parks")
     parks, passes = found.robots

@@ -64,7 +64,9 @@ def test_blocked_angles_are_those_at_which_the_circle_is_too_near(floor, center,
     xmin, ymin, xmax, ymax = floor.grown.box
     edge = np.min([at[:, 0] - xmin, xmax - at[:, 0], at[:, 1] - ymin, ymax - at[:, 1]], axis=0)
     outlines = [part if part.geom_type == "Point" else shapely.boundary(part) for part in floor.grown.parts]
-    to_outline = [shapely.distance(line, shapely.points(at)) - rho for line, rho in zip(outlines, floor.rho, strict=True)]
+    to_outline = [
+        shapely.distance(line, shapely.points(at)) - rho for line, rho in zip(outlines, floor.rho, strict=True)
+    ]
     clear = np.minimum(np.min(to_outline, axis=0), edge)
     blocked = np.zeros(len(angles), bool)
     for first, last in stretches.tolist():
@@ -89,7 +91,14 @@ def test_a_circle_round_its_own_corner_is_blocked_where_the_edges_begin():
         floor = Floor(grown, grown.rho)
         for place, first, span in zip(grown.corners.places, grown.corners.first, grown.corners.span, strict=True):
             stretches = floor.blocked_angles(place, reach, np.arange(len(floor.rho)) == 0)
-            for share, is_free in ((1e-5, True), (0.5, True), (1 - 1e-5, True), (-1e-5, False), (1 + 1e-5, False), (1.7, False)):
+            for share, is_free in (
+                (1e-5, True),
+                (0.5, True),
+                (1 - 1e-5, True),
+                (-1e-5, False),
+                (1 + 1e-5, False),
+                (1.7, False),
+            ):
                 inside = (first + share * span - stretches[:, 0]) % (2 * np.pi) < stretches[:, 1] - stretches[:, 0]
                 assert is_free != inside.any()
 

@@ -31,7 +31,10 @@ def floor():
 def least(floor, path):
     """Sampled distance, less what is kept, to parts and to the box."""
     at = path.point(np.linspace(0, path.length, 4000))
-    gaps = [shapely.distance(part, shapely.points(at)).min() - rho for part, rho in zip(floor.grown.parts, floor.rho, strict=True)]
+    gaps = [
+        shapely.distance(part, shapely.points(at)).min() - rho
+        for part, rho in zip(floor.grown.parts, floor.rho, strict=True)
+    ]
     xmin, ymin, xmax, ymax = floor.grown.box
     return min(*gaps, (at - [xmin, ymin]).min(), ([xmax, ymax] - at).min())
 

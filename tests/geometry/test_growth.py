@@ -17,7 +17,9 @@ L_SHAPE = Polygon("l", np.array([(0, 0), (4, 0), (4, 1), (1, 1), (1, 4), (0, 4)]
 def distance_to(grown, points):
     """Least distance to all parts, less what the centre keeps from each."""
     places = shapely.points(points)
-    return np.min([shapely.distance(part, places) - rho for part, rho in zip(grown.parts, grown.rho, strict=True)], axis=0)
+    return np.min(
+        [shapely.distance(part, places) - rho for part, rho in zip(grown.parts, grown.rho, strict=True)], axis=0
+    )
 
 
 def random_polygons(rng, count):
@@ -64,7 +66,9 @@ def test_an_obstacle_alone_keeps_its_vertices_to_the_last_bit():
     """Nothing is rounded on the way through shapely."""
     wild = Polygon("w", np.array([(0.1, 0.2), (1 / 3, 0.7), (0.3, np.pi)]))
     (part,) = grow([wild], 0.1, BOUNDS).parts
-    assert {tuple(vertex) for vertex in shapely.get_coordinates(part).tolist()} == {tuple(v) for v in wild.vertices.tolist()}
+    assert {tuple(vertex) for vertex in shapely.get_coordinates(part).tolist()} == {
+        tuple(v) for v in wild.vertices.tolist()
+    }
 
 
 def test_paths_turn_at_convex_corners_only():

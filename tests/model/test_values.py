@@ -92,7 +92,9 @@ def test_a_polygon_needs_an_area_of_finite_numbers(vertices):
     """Two vertices, a line, or numbers that are none are refused, in holes too."""
     assert fields(lambda: Polygon("p", np.array(vertices, float))) == ["polygon"]
     square = np.array([(0, 0), (9, 0), (9, 9), (0, 9)], float)
-    assert fields(lambda: Polygon("p", square, (np.array(vertices, float), np.array(vertices, float)))) == ["polygon"] * 2
+    assert (
+        fields(lambda: Polygon("p", square, (np.array(vertices, float), np.array(vertices, float)))) == ["polygon"] * 2
+    )
 
 
 def test_rings_run_with_the_obstacle_on_their_left():

@@ -37,14 +37,18 @@ def test_larger_robots_keep_farther_away():
     """The least distance from a column is each robot's own radius and the clearance."""
     sizes = (0.2, 0.4, 0.6)
     robots = [robot(f"r{size}", (2.0, 7.5), (18.0, 7.5), size) for size in sizes]
-    for size, path in zip(sizes, shortest_paths(problem(robots, [Circle("c", (10.0, 7.5), 1.0)]), lambda _: None), strict=True):
+    for size, path in zip(
+        sizes, shortest_paths(problem(robots, [Circle("c", (10.0, 7.5), 1.0)]), lambda _: None), strict=True
+    ):
         at = path.point(np.linspace(0, path.length, 5000))
         assert np.hypot(*(at - (10.0, 7.5)).T).min() == pytest.approx(1.0 + size + 0.05, abs=1e-5)
 
 
 def test_a_robot_at_its_goal_has_a_path_without_length():
     """Also where it touches an obstacle."""
-    (path,) = shortest_paths(problem([robot("r", (5.0, 5.0), (5.0, 5.0))], [Circle("c", (5.0, 6.35), 1.0)]), lambda _: None)
+    (path,) = shortest_paths(
+        problem([robot("r", (5.0, 5.0), (5.0, 5.0))], [Circle("c", (5.0, 6.35), 1.0)]), lambda _: None
+    )
     assert (path.length, path.end) == (0.0, (5.0, 5.0))
 
 
@@ -55,7 +59,11 @@ def test_all_robots_without_a_way_are_named_with_what_shuts_them_in():
         np.array([(4, 3), (16, 3), (16, 12), (4, 12)], float),
         (np.array([(5, 4), (15, 4), (15, 11), (5, 11)], float),),
     )
-    robots = [robot("in", (1.0, 1.0), (10.0, 7.0)), robot("out", (10.0, 8.0), (1.0, 14.0)), robot("by", (1, 2), (1, 13))]
+    robots = [
+        robot("in", (1.0, 1.0), (10.0, 7.0)),
+        robot("out", (10.0, 8.0), (1.0, 14.0)),
+        robot("by", (1, 2), (1, 13)),
+    ]
     with pytest.raises(NoPlanError) as caught:
         shortest_paths(problem(robots, [room, Circle("column", (18.0, 7.0), 0.5)]), lambda _: None)
     diagnoses = caught.value.diagnoses

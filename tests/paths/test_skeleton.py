@@ -109,7 +109,10 @@ def test_more_obstacles_or_a_larger_robot_never_shorten_the_path(route, floors, 
     """Leaving out the last obstacle, or 5 cm of the robot, gives no longer path."""
     obstacles, bounds, reach, start, goal = floors(seed, 6)
     whole = route(obstacles, bounds, reach, start, goal)
-    fewer, slimmer = route(obstacles[:-1], bounds, reach, start, goal), route(obstacles, bounds, reach - 0.05, start, goal)
+    fewer, slimmer = (
+        route(obstacles[:-1], bounds, reach, start, goal),
+        route(obstacles, bounds, reach - 0.05, start, goal),
+    )
     if whole is not None:
         assert fewer[0].length <= whole[0].length + 1e-9
         assert slimmer[0].length <= whole[0].length + 1e-9
@@ -229,7 +232,9 @@ def test_rooms_have_a_door_or_none(route, keeps_clear):
     keeps_clear(found[1], *inside)
     assert route([room], BOUNDS, 0.4, (10.0, 7.5), (18.0, 7.5)) is None
     assert route([room], BOUNDS, 0.4, (18.0, 7.5), (10.0, 7.5)) is None
-    c_shape = polygon((4, 3), (16, 3), (16, 12), (4, 12), (4, 9), (5, 9), (5, 11), (15, 11), (15, 4), (5, 4), (5, 6), (4, 6))
+    c_shape = polygon(
+        (4, 3), (16, 3), (16, 12), (4, 12), (4, 9), (5, 9), (5, 11), (15, 11), (15, 4), (5, 4), (5, 6), (4, 6)
+    )
     floor = ([c_shape], BOUNDS, 0.4, (10.0, 7.5), (18.0, 7.5))
     found = route(*floor)
     assert found is not None

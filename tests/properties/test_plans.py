@@ -49,7 +49,9 @@ def check_least_clearance(problem, result):
         assert least is None
         return
     t = np.linspace(0.0, found.makespan + 1.0, 3000)
-    at = {one.robot.name: (one.path.point(one.profile.state(t)[:, 0]), one.robot.footprint.radius) for one in found.robots}
+    at = {
+        one.robot.name: (one.path.point(one.profile.state(t)[:, 0]), one.robot.footprint.radius) for one in found.robots
+    }
     sampled = min(
         np.hypot(*(at[a][0] - at[b][0]).T).min() - at[a][1] - at[b][1]
         for a in at for b in at if a < b

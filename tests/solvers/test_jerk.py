@@ -72,7 +72,9 @@ def test_a_motion_between_moving_states_keeps_its_limits_or_is_none():
             change = abs(goal[1] ** 2 - start[1] ** 2)
             # without a jerk limit this length would do; with it the change takes at most this much more
             rate = limits.acceleration if goal[1] > start[1] else limits.deceleration
-            assert length < change / (2 * rate) + limits.speed * (rate / limits.jerk + 2 * (limits.speed / limits.jerk) ** 0.5)
+            assert length < change / (2 * rate) + limits.speed * (
+                rate / limits.jerk + 2 * (limits.speed / limits.jerk) ** 0.5
+            )
     assert found > 1500
 
 

@@ -81,7 +81,9 @@ def test_contradicting_bounds_have_no_motion():
 
 def test_more_time_gets_farther(second_opinion):
     """Stretching the last cells never brings the robot less far."""
-    reached = [farthest(cells([*np.full(12, 0.4), *np.full(4, last)], UNIT, cap=(6, 0.6)), UNIT) for last in (0.2, 0.4, 0.8)]
+    reached = [
+        farthest(cells([*np.full(12, 0.4), *np.full(4, last)], UNIT, cap=(6, 0.6)), UNIT) for last in (0.2, 0.4, 0.8)
+    ]
     assert all(far is not None for far in reached)
     assert reached == sorted(reached)
 

@@ -70,8 +70,7 @@ def _least_gap(plan, samples=4000):
     at = [one.path.point(one.profile.state(t)[:, 0]) for one in plan.robots]
     radii = [one.robot.footprint.radius for one in plan.robots]
     gaps = [
-        np.hypot(*(at[i] - at[k]).T).min() - radii[i] - radii[k]
-        for i, k in itertools.combinations(range(len(at)), 2)
+        np.hypot(*(at[i] - at[k]).T).min() - radii[i] - radii[k] for i, k in itertools.combinations(range(len(at)), 2)
     ]
     return min(gaps, default=np.inf) - plan.problem.workspace.clearance
 
@@ -97,12 +96,13 @@ def _interval(mine, other, clearance, t):
 def _fits(limits, h, lower, upper, length):
     """Whether HiGHS finds jerks on an even grid that keep the limits and, at the knots, the bounds on s."""
     n = len(lower) - 1
-    steps = {0: ((0, -1.0), (1, -h), (2, -h * h / 2), (3, -(h**3) / 6)), 1: ((1, -1.0), (2, -h), (3, -h * h / 2)), 2: ((2, -1.0), (3, -h))}
+    steps = {
+        0: ((0, -1.0), (1, -h), (2, -h * h / 2), (3, -(h**3) / 6)),
+        1: ((1, -1.0), (2, -h), (3, -h * h / 2)),
+        2: ((2, -1.0), (3, -h)),
+    }
     entries = [
-        (3 * k + i, 4 * k + j, value)
-        for k in range(n)
-        for i, row in steps.items()
-        for j, value in (*row, (4 + i, 1.0))
+        (3 * k + i, 4 * k + j, value) for k in range(n) for i, row in steps.items() for j, value in (*row, (4 + i, 1.0))
     ]
     rows, columns, values = map(list, zip(*entries, strict=True))
     A = casadi.DM.triplet(rows, columns, casadi.DM(values), 3 * n, 4 * n + 3)

@@ -64,7 +64,9 @@ def test_the_time_of_a_collision_is_within_the_window():
         else:
             inside = [
                 (low < s) & (s < high)
-                for (low, _), (high, _), s in zip(window.low, window.high, PROFILE.state(window.times[:-1])[:, 0], strict=True)
+                for (low, _), (high, _), s in zip(
+                    window.low, window.high, PROFILE.state(window.times[:-1])[:, 0], strict=True
+                )
             ]
             assert not any(inside)
     assert seen > 50

@@ -18,7 +18,9 @@ FREE = Ends(start_free=True, goal_free=True, other_waits=False, other_parks=Fals
 
 
 def meeting(ego, other, reach, profile, ends=FREE):
-    (region,) = conflict_regions(chords(ego), chords(other), reach, start_free=ends.start_free, goal_free=ends.goal_free)
+    (region,) = conflict_regions(
+        chords(ego), chords(other), reach, start_free=ends.start_free, goal_free=ends.goal_free
+    )
     return Meeting(region, 1, profile, ends, ego.length)
 
 

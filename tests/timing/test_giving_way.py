@@ -34,7 +34,9 @@ def crossing(limits, radius=0.3, arm=10.0):
 
 @settings(deadline=None, derandomize=True, max_examples=25)
 @given(st.floats(0.3, 2.0), st.floats(0.3, 2.0), st.floats(0.5, 4.0), st.floats(0.1, 0.6))
-def test_at_a_right_angle_the_second_loses_root_two_times_the_distance_over_the_speed(speed, acceleration, jerk, radius):
+def test_at_a_right_angle_the_second_loses_root_two_times_the_distance_over_the_speed(
+    speed, acceleration, jerk, radius
+):
     """Both cruise at v; d later the distance is at least v d / sqrt(2): the delay is sqrt(2) R / v, within 1 %."""
     limits = Limits(speed, acceleration, acceleration, jerk, acceleration)
     first, second = plan(crossing(limits, radius, 30.0)).plan.robots
@@ -195,7 +197,10 @@ def test_a_quicker_world_has_shorter_times(crossroads, seed, k):
             limits.lateral_acceleration * k**2,
         )
 
-    plain, other = arrivals(moved(problem, lambda p: p)), arrivals(moved(problem, lambda p: p, limits=quicker, time=1 / k))
+    plain, other = (
+        arrivals(moved(problem, lambda p: p)),
+        arrivals(moved(problem, lambda p: p, limits=quicker, time=1 / k)),
+    )
     if plain is not None:
         assert other * k == pytest.approx(plain, rel=1e-3)
 

@@ -18,7 +18,9 @@ LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
 
 def robot(length=20.0, release=0.0):
-    return ego(Robot("e", Footprint(0.3), LIMITS, (0.0, 0.0), (length, 0.0), release=release), straight((0, 0), (length, 0)))
+    return ego(
+        Robot("e", Footprint(0.3), LIMITS, (0.0, 0.0), (length, 0.0), release=release), straight((0, 0), (length, 0))
+    )
 
 
 def block(since, until, low, high):

@@ -37,7 +37,6 @@ def test_little_to_spare_before_somebody_needs_a_finer_grid_and_gets_it(lanes, c
 LATE = "no grid of timing/program.py fits before bounds with a hundredth of a second to spare (up to 10 % later than needed)"
 
 
-
 @pytest.mark.parametrize("seed", [60, 218, pytest.param(297, marks=pytest.mark.xfail(strict=True, reason=LATE))])
 def test_a_narrow_gap_before_somebody_is_used(lanes, could_arrive, seed):
     """Where passing before the first and after the next is possible with little to spare, it is found within 2 %."""
