@@ -12,9 +12,6 @@ from coord.model.arrays import Array, frozen
 from coord.model.path import Path
 from coord.model.robot import Limits
 
-#: A clothoid is cut into at most this many sections.
-_MOST_CUTS = 24
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpeedLimit:
@@ -73,15 +70,17 @@ def cap(curvature: float, limits: Limits) -> float:
 
 
 def _cuts(length: float, k0: float, k1: float, limits: Limits, cap_ratio: float) -> list[tuple[float, float]]:
-    """Ends within the piece and caps of its cuts."""
-    low, high = sorted((cap(k0, limits), cap(k1, limits)))
-    if k0 * k1 < 0:
-        high = limits.speed
-    if high <= low * (1 + 1e-12):
-        return [(length, low)]
-    count = min(_MOST_CUTS, math.ceil(math.log(high / low) / math.log(cap_ratio)) + 1)
-    edges = [k / count for k in range(count + 1)]
+    """Ends within the piece and caps of its cuts: where the cap has changed by the factor, or full speed is allowed."""
+    if k0 == k1:
+        return [(length, cap(k0, limits))]
+    # the cap falls with the root of the curvature, so these are the curvatures at which the piece is cut
+    level = limits.lateral_acceleration / limits.speed**2
+    levels = [level]
+    while levels[-1] < max(abs(k0), abs(k1)):
+        levels.append(levels[-1] * cap_ratio**2)
+    inside = {side * k for k in levels for side in (1, -1) if min(k0, k1) < side * k < max(k0, k1)}
+    edges = [k0, *sorted(inside, reverse=k1 < k0), k1]
     return [
-        (length * after, cap(max(abs(k0 + (k1 - k0) * before), abs(k0 + (k1 - k0) * after)), limits))
+        (length * (after - k0) / (k1 - k0), cap(max(abs(before), abs(after)), limits))
         for before, after in itertools.pairwise(edges)
     ]

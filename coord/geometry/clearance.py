@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.geometry.blocked import Floor
 from coord.model.arrays import Array
 from coord.model.path import Path
+from coord.tolerances import DISTANCE
 
 #: [m] First chords of a bend lie at most so far from it; those too near to an obstacle are halved.
 _COARSE = 1e-2
@@ -23,18 +25,16 @@ def keeps_distance(floor: Floor, path: Path) -> bool:
     A point of a bend lies within max|curvature| h^2 / 8 of the chord over its arc length h. A bend that
     touches may be refused, if it comes nearer than about a millionth of a metre.
     """
-    if not _in_box(floor, path):
-        return False
     bends = np.abs(path.pieces[:, 1:]).max(axis=1, initial=0.0)
     lines = np.flatnonzero(bends == 0)
     segments = np.hstack([path.poses[lines, :2], path.poses[lines + 1, :2]])
-    if len(floor.hit_parts(segments)):
+    if len(floor.hit_parts(segments)) or np.any(_leaves_box(floor, segments, 0.0)):
         return False
     s, bend = _first_chords(path, bends)
     while len(s):
         error = bend * (s[:, 1] - s[:, 0]) ** 2 / 8
         ends = path.point(s.ravel()).reshape(-1, 4)
-        near = floor.is_hit(ends, error)
+        near = floor.is_hit(ends, error) | _leaves_box(floor, ends, error[:, None])
         if np.any(near & (error <= _FINE)):
             return False
         s, bend = s[near], np.repeat(bend[near], 2)
@@ -54,16 +54,11 @@ def _first_chords(path: Path, bends: Array) -> tuple[Array, Array]:
     return np.array(s).reshape(-1, 2), np.array(bend)
 
 
-def _in_box(floor: Floor, path: Path) -> bool:
-    """Ends of pieces in the box, and bends nowhere farther out than their chords' error."""
+def _leaves_box(floor: Floor, segments: Array, error: Array | float) -> npt.NDArray[np.bool_]:
+    """Whether segments (n, 4), widened by their errors, reach out of the box."""
     xmin, ymin, xmax, ymax = floor.grown.box
-    s, bend = _first_chords(path, np.abs(path.pieces[:, 1:]).max(axis=1, initial=0.0))
-    error = np.concatenate([np.zeros(len(path.breaks)), np.repeat(bend * (s[:, 1] - s[:, 0]) ** 2 / 8, 2)])
-    x, y = np.concatenate([path.poses[:, :2], path.point(s.ravel())]).T
-    slack = 1e-9
-    return bool(
-        np.all(x - error >= xmin - slack)
-        and np.all(x + error <= xmax + slack)
-        and np.all(y - error >= ymin - slack)
-        and np.all(y + error <= ymax + slack)
-    )
+    x, y = segments[:, [0, 2]], segments[:, [1, 3]]
+    slack = DISTANCE
+    outside = (x - error < xmin - slack) | (x + error > xmax + slack)
+    outside |= (y - error < ymin - slack) | (y + error > ymax + slack)
+    return np.asarray(outside.any(axis=1))

@@ -49,7 +49,8 @@ def excess(profile: VelocityProfile, window: Window) -> Excess:
     inside = profile.times[(profile.times > first) & (profile.times < last)]
     times = np.unique(np.concatenate([edges, inside]))
     start, h = times[:-1], np.diff(times)
-    strip = np.searchsorted(edges, start + h / 2, side="right") - 1
+    # the middle of a part of one ulp is one of its ends: hence the clip
+    strip = np.clip(np.searchsorted(edges, start + h / 2, side="right") - 1, 0, len(edges) - 2)
     state = profile.state(start)
     moving = (start >= profile.departure) & (start < profile.arrival)
     if len(profile.jerks):

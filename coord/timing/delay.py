@@ -42,12 +42,10 @@ def after_contact(profile: VelocityProfile, window: Window) -> Contact:
         return Contact(np.inf, float(window.times[-1]), 0.0)
     contact = _extreme(profile, window.times, window.low, 1.0)
     # sampling the boundary leaves a hair: close it by the exact check
-    delay = contact.delay
-    for _ in range(40):
-        over = excess(profile.shifted(delay), window).over_low
-        if over <= SLACK:
-            break
-        delay += max(_LEAST_STEP, 1.01 * over / max(_speed_at(profile, contact.s), 0.1))
+    delay, step = contact.delay, _LEAST_STEP
+    while excess(profile.shifted(delay), window).over_low > SLACK:
+        delay += step
+        step *= 2
     return Contact(delay, contact.time, contact.s)
 
 
@@ -59,12 +57,10 @@ def before_contact(profile: VelocityProfile, window: Window) -> Contact:
     if window.lasts:
         times = np.concatenate([times[:-1], [times[-2] + 1.0]])
     contact = _extreme(profile, times, window.high, -1.0)
-    delay = contact.delay
-    for _ in range(40):
-        under = excess(profile.shifted(delay), window).under_high
-        if under <= SLACK:
-            break
-        delay -= max(_LEAST_STEP, 1.01 * under / max(_speed_at(profile, contact.s), 0.1))
+    delay, step = contact.delay, _LEAST_STEP
+    while excess(profile.shifted(delay), window).under_high > SLACK:
+        delay -= step
+        step *= 2
     return Contact(delay, contact.time, contact.s)
 
 
@@ -94,7 +90,3 @@ def _extreme(profile: VelocityProfile, times: Array, bound: Array, sign: float) 
     delays = sign * (t - time_at(profile, s))
     best = int(np.argmax(delays))
     return Contact(sign * float(delays[best]), float(t[best]), float(s[best]))
-
-
-def _speed_at(profile: VelocityProfile, s: float) -> float:
-    return float(profile.state(time_at(profile, s))[0, 1])

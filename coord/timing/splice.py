@@ -98,7 +98,8 @@ def _arc(
     """Follow one profile up to ``begin`` and the other from ``end`` on, with a ruckig arc in between."""
     if end <= begin or begin >= current.arrival:
         return None
-    start, goal = current.state(begin)[0], target.state(end)[0]
+    start = current.state(begin)[0]
+    goal = target.states[-1] if end >= target.arrival else target.state(end)[0]
     if goal[0] < start[0]:
         return None
     limits = ego.robot.limits

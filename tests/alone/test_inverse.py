@@ -38,7 +38,7 @@ def stop_and_go(dwell):
     """2 m, a stop of some length, 3 m more."""
     first, second = rest_to_rest(2.0, Limits(1, 0.5, 0.5, 1, 1)), rest_to_rest(3.0, Limits(1, 0.5, 0.5, 1, 1))
     times = [*first.times, *(first.arrival + dwell + second.times)]
-    states = [*first.states, *([*second.states, 2.0, 0.0, 0.0])]
+    states = [*first.states, *(np.array([2.0, 0.0, 0.0]) + second.states)]
     return first.arrival, VelocityProfile(times, states, [*first.jerks, 0.0, *second.jerks])
 
 
