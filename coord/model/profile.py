@@ -55,7 +55,9 @@ class VelocityProfile:
         if not len(self.jerks):
             return np.repeat(self.states[:1], len(t), axis=0)
         k = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.jerks) - 1)
-        return advance(self.states[k], self.jerks[k], t - self.times[k])
+        states = advance(self.states[k], self.jerks[k], t - self.times[k])
+        states[t >= self.arrival] = self.states[-1]  # rest is rest, to the last digit
+        return states
 
     def shifted(self, delay: float) -> VelocityProfile:
         """The same motion, later by ``delay`` [s]."""

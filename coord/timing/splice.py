@@ -98,8 +98,7 @@ def _arc(
     """Follow one profile up to ``begin`` and the other from ``end`` on, with a ruckig arc in between."""
     if end <= begin or begin >= current.arrival:
         return None
-    start = current.state(begin)[0]
-    goal = target.states[-1] if end >= target.arrival else target.state(end)[0]
+    start, goal = current.state(begin)[0], target.state(end)[0]
     if goal[0] < start[0]:
         return None
     limits = ego.robot.limits
@@ -130,7 +129,6 @@ def _between(profile: VelocityProfile, start: float, end: float) -> VelocityProf
         return VelocityProfile(frozen([start]), profile.state([start]), frozen([]))
     inside = (profile.times > start + SHORTEST_PHASE) & (profile.times < end - SHORTEST_PHASE)
     ends = profile.state([start, end])
-    last = profile.states[-1:] if end >= profile.arrival else ends[1:]  # rest is rest, to the last digit
     times = np.concatenate([[start], profile.times[inside], [end]])
     phase = np.searchsorted(profile.times, (times[:-1] + times[1:]) / 2, side="right") - 1
-    return VelocityProfile(times, np.concatenate([ends[:1], profile.states[inside], last]), profile.jerks[phase])
+    return VelocityProfile(times, np.concatenate([ends[:1], profile.states[inside], ends[1:]]), profile.jerks[phase])

@@ -47,9 +47,6 @@ def test_states_are_those_of_constant_jerks(phases, times):
     assert np.abs(profile.state(times) - expected).max() <= 1e-12 * scale * profile.arrival**3
 
 
-@pytest.mark.xfail(
-    strict=True, reason="state(arrival) is the last phase's formula, not the last knot: rest is 1e-16 off"
-)
 def test_at_a_knot_the_state_is_the_knots_own():
     """Bit for bit, so that a robot at its goal is at rest, whatever rounding the last phase has."""
     limits = Limits(1.19, 0.91, 0.84, 1.68, 0.5)
