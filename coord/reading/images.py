@@ -1,4 +1,4 @@
-"""Grey values of a map's image: PGM by a small exact reader, PNG and BMP with Pillow.
+"""Grey values of a map's image: PGM by a small exact reader, PNG, BMP and JPEG with Pillow.
 
 Sizes are taken from the header and checked before anything is decoded.
 """
@@ -38,7 +38,7 @@ class Image:
 
 
 def read_image(data: bytes) -> Image:
-    """Read an image from the bytes of a PGM (P2 or P5), PNG or BMP file.
+    """Read an image from the bytes of a PGM (P2 or P5), PNG, BMP or JPEG file.
 
     The value of a coloured pixel is the sum of its channels, alpha included, as in ROS' map_server.
 
@@ -93,7 +93,7 @@ def _read_other(data: bytes) -> Image:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of its warnings, the one about large images is decided here
-            with PIL.Image.open(io.BytesIO(data), formats=("PNG", "BMP")) as image:
+            with PIL.Image.open(io.BytesIO(data), formats=("PNG", "BMP", "JPEG")) as image:
                 _checked_size(*image.size)
                 if image.mode not in ("1", "L", "LA", "P", "PA", "RGB", "RGBA"):
                     raise ImageError(f'has cells of the kind "{image.mode}"; write it with 8 bits a channel')
@@ -104,7 +104,7 @@ def _read_other(data: bytes) -> Image:
     except ImageError:
         raise
     except PIL.UnidentifiedImageError:
-        raise ImageError("is no PGM, PNG or BMP image") from None
+        raise ImageError("is no PGM, PNG, BMP or JPEG image") from None
     except PIL.Image.DecompressionBombError:
         raise ImageError(f"has too many cells; at most {LARGEST_MAP // 10**6} million can be read") from None
     except (OSError, SyntaxError, ValueError, EOFError, IndexError, TypeError, struct.error, zlib.error) as error:

@@ -24,14 +24,6 @@ class NotYet(NamedTuple):
 NOT_YET: tuple[NotYet, ...] = (
     NotYet("file", "robots_file", "a file of robots"),
     NotYet("workspace", "after_arrival", 'after_arrival = "leave"', lambda value: value == "leave"),
-    NotYet(
-        "workspace",
-        "map",
-        "a map that is an image or a MovingAI .map",
-        lambda name: not name.lower().endswith((".yaml", ".yml")),
-    ),
-    NotYet("workspace", "resolution", "the resolution of an image or .map"),
-    NotYet("workspace", "occupied_below", "occupied_below, for maps that are images,"),
     NotYet("robot", "footprint", "a footprint other than { disc = radius }", lambda shape: "disc" not in shape),
     NotYet("robot", "heading", 'heading = "path"', lambda value: value == "path"),
     NotYet("robot", "side", 'a side other than "quickest"', lambda value: value != "quickest"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,53 +12,17 @@ import numpy.typing as npt
 import yaml
 
 from coord.errors import BadFileError, Fault
-from coord.model.arrays import Point
-from coord.model.obstacle import Polygon
 from coord.reading.files import UnreadableError, read_bytes
+from coord.reading.grid_map import LARGEST_FILE, GridMap
 from coord.reading.images import Image, ImageError, read_image
 from coord.reading.not_yet import refusals
 from coord.reading.report import shown
-from coord.reading.trace import trace
 from coord.tolerances import LARGEST_COORDINATE
 
 _LARGEST_YAML = 2**16
-_LARGEST_IMAGE = 2**28
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RosMap:
-    """A map as read.
-
-    Parameters
-    ----------
-    occupied : (rows, columns) array, row 0 at the bottom.
-    resolution : side of a cell [m]. origin : lower left corner of the map [m].
-    files : the bytes of the YAML file and of the image.
-    """
-
-    occupied: npt.NDArray[np.bool_]
-    resolution: float
-    origin: Point
-    files: tuple[bytes, bytes]
-
-    @property
-    def bounds(self) -> tuple[float, float, float, float]:
-        """The map's extent xmin, ymin, xmax, ymax [m]."""
-        rows, columns = self.occupied.shape
-        x, y = self.origin
-        return (x, y, x + self.resolution * columns, y + self.resolution * rows)
-
-
-def map_obstacles(ros_map: RosMap) -> list[Polygon]:
-    """The occupied cells as polygons, exactly, named "map 1", "map 2" and so on."""
-    polygons = []
-    for k, (shell, holes) in enumerate(trace(ros_map.occupied), start=1):
-        outline, *inner = (np.array(ros_map.origin) + ros_map.resolution * ring for ring in (shell, *holes))
-        polygons.append(Polygon(f"map {k}", outline, tuple(inner)))
-    return polygons
-
-
-def read_ros_map(path: Path, unknown: str) -> RosMap:
+def read_ros_map(path: Path, unknown: str) -> GridMap:
     """Read a map and its image, which is found relative to it.
 
     Parameters
@@ -82,14 +45,14 @@ def read_ros_map(path: Path, unknown: str) -> RosMap:
     values = _values(path, nodes)
     file = path.parent / values["image"]
     try:
-        image_data = read_bytes(file, _LARGEST_IMAGE)
+        image_data = read_bytes(file, LARGEST_FILE)
         occupied = _occupied(read_image(image_data), values, unknown)
     except UnreadableError as error:
         text = f"the image {shown(values['image'])} {error}"
         raise BadFileError([Fault(str(path), nodes["image"][0], "", text)]) from None
     except ImageError as error:
         raise BadFileError([Fault(str(file), None, "", f"the image {error}")]) from None
-    ros_map = RosMap(occupied, values["resolution"], values["origin"][:2], (data, image_data))
+    ros_map = GridMap(occupied, values["resolution"], values["origin"][:2], (data, image_data))
     reach = max(abs(value) for value in ros_map.bounds)
     if reach > LARGEST_COORDINATE:
         text = f"the map reaches {reach:g} m from the origin; coordinates must stay within {LARGEST_COORDINATE:g} m"

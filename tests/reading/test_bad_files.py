@@ -229,14 +229,18 @@ WORKSPACES = [
     ("bounds = [0, 0, 10, 10]\nclearance = -0.1", 4, "clearance must be >= 0 m (got -0.1)"),
     ('bounds = [0, 0, 10, 10]\nafter_arrival = "go"', 4, 'after_arrival must be "stay" or "leave" (got "go")'),
     ('bounds = [0, 0, 10, 10]\nafter_arrival = "leave"', 4, 'after_arrival = "leave" is not supported yet'),
-    ("bounds = [0, 0, 10, 10]\nresolution = 1", 4, "the resolution of an image or .map is not supported yet"),
+    (
+        "bounds = [0, 0, 10, 10]\nresolution = 1",
+        4,
+        "resolution belongs to a map that is a MovingAI map (.map) or an image (this is no map)",
+    ),
     (
         "bounds = [0, 0, 10, 10]\noccupied_below = 0.5",
         4,
-        "occupied_below, for maps that are images, is not supported yet",
+        "occupied_below belongs to a map that is an image (this is no map)",
     ),
-    ('map = "arena.map"', 3, "a map that is an image or a MovingAI .map is not supported yet"),
-    ('map = "floor.png"', 3, "a map that is an image or a MovingAI .map is not supported yet"),
+    ('map = "arena.map"', 3, 'the map "arena.map" does not exist'),
+    ('map = "floor.png"', 3, "a map that is an image needs resolution, the side of a cell in m"),
     ('map = "floor.yaml"', 3, 'the map "floor.yaml" does not exist'),
     ('map = "floor.yaml"\nunknown = "maybe"', 4, 'unknown must be "occupied" or "free" (got "maybe")'),
     ("bound = [0, 0, 10, 10]", 3, 'unknown key "bound"; did you mean "bounds"?'),
@@ -288,6 +292,6 @@ def test_names_are_shown_on_one_line(faults_of):
 
 def test_a_robot_that_accepts_any_side_and_a_fixed_heading_is_read(read):
     """The plain values of fields whose other values are not built yet are accepted."""
-    floor = 'after_arrival = "stay"\nunknown = "free"\n'
+    floor = 'after_arrival = "stay"\n'
     text = f'{HEAD}{floor}{ROBOT}side = "quickest"\nheading = "fixed"\ncorner_radius = 0\n'
     assert read(text).robots[0].name == "a"

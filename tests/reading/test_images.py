@@ -68,8 +68,8 @@ def test_colours_are_the_sum_of_their_channels_alpha_included():
 @pytest.mark.parametrize(
     ("data", "fault"),
     [
-        (b"", "is no PGM, PNG or BMP image"),
-        (b"P6 1 1 255\n000", "is no PGM, PNG or BMP image"),
+        (b"", "is no PGM, PNG, BMP or JPEG image"),
+        (b"P6 1 1 255\n000", "is no PGM, PNG, BMP or JPEG image"),
         (b"P5 two 1 255\n0", "has no PGM header: P5 or P2, width, height, largest value"),
         (b"P5 2 1 255\n0", "is cut short: 2 x 1 cells are announced, 1 are there"),
         (b"P2 2 2 255\n0 1 2", "is cut short: 2 x 2 cells are announced, 3 are there"),

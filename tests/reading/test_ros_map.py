@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from coord.errors import BadFileError
+from coord.reading.grid_map import map_obstacles
 from coord.reading.problem_file import read_problem
-from coord.reading.ros_map import map_obstacles, read_ros_map
+from coord.reading.ros_map import read_ros_map
 
 YAML = """\
 image: floor.pgm
@@ -130,7 +131,7 @@ def test_a_robot_in_an_occupied_cell_is_told_with_the_part_of_the_map(folder):
         ("image: floor.pgm\n", "", "maps/floor.yaml:1: image is missing"),
         ("floor.pgm", "else.pgm", 'maps/floor.yaml:1: the image "else.pgm" does not exist'),
         ("floor.pgm", ".", 'maps/floor.yaml:1: the image "." is not a regular file'),
-        ("floor.pgm", "floor.yaml", "maps/floor.yaml: the image is no PGM, PNG or BMP image"),
+        ("floor.pgm", "floor.yaml", "maps/floor.yaml: the image is no PGM, PNG, BMP or JPEG image"),
         ("0.5", "0", 'maps/floor.yaml:2: resolution must be a number > 0 in m, the side of a cell (got "0")'),
         ("0.5", ".nan", 'maps/floor.yaml:2: resolution must be a number > 0 in m, the side of a cell (got ".nan")'),
         (
