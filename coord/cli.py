@@ -124,7 +124,7 @@ def plan(
         str | None, typer.Option(metavar="NAME", help="How robots drive. fastest: each arrives as early as it can.")
     ] = None,
     time_limit: Annotated[float | None, typer.Option(metavar="S", help="Stop searching after this long [s].")] = None,
-    gap_target: Annotated[float | None, typer.Option(metavar="G", help="Stop at this optimality gap.")] = None,
+    gap_target: Annotated[float | None, typer.Option(metavar="G", help="Not supported yet.")] = None,
     seed: Annotated[int | None, typer.Option(metavar="N", help="For everything drawn at random.")] = None,
     plots: Annotated[
         bool | None,

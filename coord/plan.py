@@ -12,7 +12,7 @@ from coord.coordination import diagnose
 from coord.coordination.blocking import blocking_arcs
 from coord.coordination.order import shortest_cycle, topological_order, urgency
 from coord.coordination.prioritised import Scene, blocked_places, plan_in_order
-from coord.errors import NoPlanError
+from coord.errors import InvalidValueError, NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
 from coord.model.result import Clearance, Diagnosis, Plan, Result, RobotPlan
@@ -38,11 +38,24 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     Result
         With a plan and ``certified`` true; or without a plan and with diagnoses that say why; or, should the
         checker refuse what the planner made, with the plan, ``certified`` false and the checker's findings.
+
+    Raises
+    ------
+    InvalidValueError
+        When the problem asks for something that is not supported yet.
     """
     began = time.perf_counter()
     options = options or Options()
+    if problem.workspace.after_arrival != "stay":
+        raise InvalidValueError(
+            [("after_arrival", f'after_arrival "{problem.workspace.after_arrival}" is not supported yet')]
+        )
+
+    def time_is_up() -> bool:
+        return options.time_limit is not None and time.perf_counter() - began > options.time_limit
+
     try:
-        found = _planned(problem, options, progress or (lambda stage, done, total: None))
+        found = _planned(problem, options, progress or (lambda stage, done, total: None), time_is_up)
     except NoPlanError as failure:
         seconds = time.perf_counter() - began
         return Result(problem, None, False, diagnoses=failure.diagnoses, stopped="no plan", seconds=seconds)
@@ -51,7 +64,7 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     return _result(problem, found, document, report, time.perf_counter() - began)
 
 
-def _planned(problem: Problem, options: Options, progress: Progress) -> Plan:
+def _planned(problem: Problem, options: Options, progress: Progress, time_is_up: Callable[[], bool]) -> Plan:
     """The stages in order: paths, alone, conflicts, order, timing."""
     robots, clearance = problem.robots, problem.workspace.clearance
     names = [robot.name for robot in robots]
@@ -74,7 +87,7 @@ def _planned(problem: Problem, options: Options, progress: Progress) -> Plan:
         neighbours[i].append(k)
         neighbours[k].append(i)
     scene = Scene(egos, chains, neighbours, blocked_places(arcs, names), clearance)
-    timings = plan_in_order(scene, order, lambda done: progress("velocities", done, len(robots)))
+    timings = plan_in_order(scene, order, lambda done: progress("velocities", done, len(robots)), time_is_up)
 
     records = tuple(
         RobotPlan(

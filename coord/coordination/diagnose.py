@@ -29,9 +29,11 @@ def stuck(name: str, others: Sequence[str], place: Point) -> Diagnosis:
     return Diagnosis("never-free", (name, *others), text, place, None, "Give it a higher priority.")
 
 
-def time_is_up(limit: float, planned: int, total: int) -> Diagnosis:
+def time_is_up(planned: int, total: int) -> Diagnosis:
     """The time limit came before the first whole plan."""
-    text = f"The time limit of {limit:g} s ended the run after {planned} of {total} robots, before there was a plan."
+    text = (
+        f"The time limit ended the run when {planned} of {total} robots had a velocity profile: there is no plan yet."
+    )
     return Diagnosis("time-limit", (), text, None, None, "Allow more time.")
 
 

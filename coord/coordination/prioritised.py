@@ -57,20 +57,26 @@ def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozens
     return frozenset(places)
 
 
-def plan_in_order(scene: Scene, order: Sequence[int], done: Callable[[int], None]) -> dict[int, Timing]:
+def plan_in_order(
+    scene: Scene, order: Sequence[int], done: Callable[[int], None], time_is_up: Callable[[], bool] = lambda: False
+) -> dict[int, Timing]:
     """A profile for every robot, each against those before it in the order.
 
     Parameters
     ----------
     done : called after each robot with the number of robots that have a profile.
+    time_is_up : asked before each robot.
 
     Raises
     ------
     NoPlanError
-        When a robot stays blocked for ever, which an order that respects the blocking arcs excludes.
+        When the time is up, or a robot stays blocked for ever, which an order that respects the blocking arcs
+        excludes.
     """
     timings: dict[int, Timing] = {}
     for i in order:
+        if time_is_up():
+            raise NoPlanError([diagnose.time_is_up(len(timings), len(order))])
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
         is_last = all(k in timings for k in scene.neighbours[i])
         timing = time_robot(scene.egos[i], meetings, is_last=is_last)

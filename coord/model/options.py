@@ -33,9 +33,9 @@ class Options:
     shape : "fitted": every turn as wide as pays in time; "taut": the shortest way of arcs and tangents.
     order : "priority": the user's priorities, else the longest alone first.
     profile : "fastest": each robot arrives as early as it can.
-    time_limit : wall time [s] after which the search ends; None for no limit.
-    gap_target : the search ends at this gap; None for no target.
-    seed : of every random draw.
+    time_limit : wall time [s] after which a run without a plan gives up; None for no limit.
+    gap_target : None; the gap at which a search over orders would end comes with that search.
+    seed : of every random draw; nothing is drawn yet.
     """
 
     method: str = "velocity"
@@ -54,10 +54,11 @@ class Options:
                 later = "is not supported yet" if value in _LATER[field] else "is unknown"
                 known = ", ".join(f'"{choice}"' for choice in choices)
                 faults.append((field, f'{field} "{value}" {later}; it can be {known}'))
-        for field, unit in (("time_limit", " s"), ("gap_target", "")):
-            number = getattr(self, field)
-            if number is not None and not (math.isfinite(number) and number > 0):
-                faults.append((field, f"{field} must be > 0{unit} (got {number:g})"))
+        limit = self.time_limit
+        if limit is not None and not (math.isfinite(limit) and limit > 0):
+            faults.append(("time_limit", f"time_limit must be > 0 s (got {limit:g})"))
+        if self.gap_target is not None:
+            faults.append(("gap_target", "gap_target is not supported yet: there is no search that it could end"))
         if self.seed < 0:
             faults.append(("seed", f"seed must be >= 0 (got {self.seed})"))
         if faults:

@@ -199,8 +199,13 @@ def _compatible(after: Window, before: Window, speed: float) -> bool:
     """Whether full speed suffices from every point of the one bound to every point of the other."""
     ta, sa = np.stack([after.times[:-1], after.times[1:]], axis=1).ravel(), after.low.ravel()
     tb, sb = np.stack([before.times[:-1], before.times[1:]], axis=1).ravel(), before.high.ravel()
-    reach = sa[:, None] + speed * np.maximum(tb[None] - ta[:, None], 0.0)
-    return bool(np.all(reach >= sb[None]))
+    order = np.argsort(ta, kind="stable")
+    ta, sa = ta[order], sa[order]
+    # a point of the one that lies later holds as it is; one that lies earlier lets the robot go on at full speed
+    later = np.append(np.minimum.accumulate(sa[::-1])[::-1], np.inf)
+    earlier = np.append(np.inf, np.minimum.accumulate(sa - speed * ta))
+    count = np.searchsorted(ta, tb, side="left")
+    return bool(np.all(np.minimum(later[count], earlier[count] + speed * tb) >= sb))
 
 
 def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[VelocityProfile | None, str]:

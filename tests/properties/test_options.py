@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from coord.errors import CoordError
 from coord.model.obstacle import Circle
 from coord.model.options import Options
@@ -22,7 +20,6 @@ CROSSING = Problem(
 )
 
 
-@pytest.mark.xfail(strict=True, reason="plan() never looks at the time limit")
 def test_a_time_limit_that_is_up_before_there_is_a_plan_ends_the_run():
     """A nanosecond is too little: no plan and a diagnosis, or a refusal, but no plan as if nothing had been said."""
     try:

@@ -7,7 +7,8 @@ import numpy as np
 from coord.conflicts.chords import chords
 from coord.conflicts.region import conflict_regions
 from coord.conflicts.rest import runs_over
-from coord.model.path import Path
+from coord.model.path import Path, straight
+from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.solvers.jerk import rest_to_rest
 from coord.timing.clear import excess
@@ -81,3 +82,19 @@ def test_the_first_violated_meeting_is_the_one_that_collides_first():
         if violated is None:
             assert np.isinf(first)
     assert hit > 15
+
+
+def test_a_goal_a_centimetre_within_the_reach_of_a_resting_robot_is_not_avoided():
+    """Nor is a start; a goal or a start a centimetre beyond it is."""
+    resting, limits = VelocityProfile([0.0], [(0.0, 0.0, 0.0)], []), Limits(1.0, 0.5, 0.5, 1.0, 0.5)
+    profile = rest_to_rest(5.0, limits)
+    for gap in (0.64, 0.66):
+        for x in (5.0 + gap, -gap):
+            ends = Ends(start_free=x > 0, goal_free=x < 0, other_waits=True, other_parks=True)
+            mine, other = straight((0.0, 0.0), (5.0, 0.0)), straight((x, 0.0), (x, 0.0))
+            found = [
+                Meeting(region, 1, resting, ends, 5.0)
+                for region in conflict_regions(chords(mine), chords(other), 0.65, start_free=x > 0, goal_free=x < 0)
+            ]
+            assert all(meeting.is_avoided(profile) for meeting in found) == (gap > 0.65)
+            assert (first_violated(found, profile) is None) == (gap > 0.65)
