@@ -53,11 +53,6 @@ class Path:
         return float(self.breaks[-1])
 
     @property
-    def is_straight(self) -> bool:
-        """Whether the path is one straight line (or a single point)."""
-        return not bool(np.any(self.pieces[:, 1:]))
-
-    @property
     def end(self) -> Point:
         """The point at the end of the path [m]."""
         return (float(self.poses[-1, 0]), float(self.poses[-1, 1]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from coord.model.arrays import Point
 from coord.model.path import Path
@@ -125,4 +125,3 @@ class Result:
     diagnoses: tuple[Diagnosis, ...] = ()
     stopped: str = "done"
     seconds: float = 0.0
-    stage_seconds: dict[str, float] = field(default_factory=dict)

@@ -17,16 +17,14 @@ SLACK = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """How far [m] a profile reaches above a window's lower and below its upper bound, at worst, and when [s].
+    """How far [m] a profile reaches above a window's lower and below its upper bound, at worst.
 
     ``over_low`` <= 0: it passes after the other; ``under_high`` <= 0: before. Both above 0: a collision course,
-    the first time of which is ``time``.
+    the first time [s] of which is ``time``.
     """
 
     over_low: float
-    over_time: float
     under_high: float
-    under_time: float
     time: float
 
     @property
@@ -59,19 +57,11 @@ def excess(profile: VelocityProfile, window: Window) -> Excess:
     else:
         jerk = np.zeros_like(start)
     state[~moving, 1:] = 0.0
-    over, over_at = _highest(state, jerk, h, *_line(window.low, edges, strip, start))
-    negated = np.stack([-state[:, 0], -state[:, 1], -state[:, 2]], axis=1)
+    over = _highest(state, jerk, h, *_line(window.low, edges, strip, start))
     value, slope = _line(window.high, edges, strip, start)
-    under, under_at = _highest(negated, -jerk, h, -value, -slope)
+    under = _highest(-state, -jerk, h, -value, -slope)
     both = np.flatnonzero((over > SLACK) & (under > SLACK))
-    k, m = int(np.argmax(over)), int(np.argmax(under))
-    return Excess(
-        float(over[k]),
-        float(start[k] + over_at[k]),
-        float(under[m]),
-        float(start[m] + under_at[m]),
-        float(start[both[0]]) if len(both) else np.inf,
-    )
+    return Excess(float(over.max()), float(under.max()), float(start[both[0]]) if len(both) else np.inf)
 
 
 def _line(bound: Array, edges: Array, strip: npt.NDArray[np.intp], start: Array) -> tuple[Array, Array]:
@@ -80,8 +70,8 @@ def _line(bound: Array, edges: Array, strip: npt.NDArray[np.intp], start: Array)
     return bound[strip, 0] + slope * (start - edges[strip]), slope
 
 
-def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) -> tuple[Array, Array]:
-    """Largest s(u) - line(u) on [0, h] for cubics s, and where: at the ends or where the derivative vanishes."""
+def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) -> Array:
+    """Largest s(u) - line(u) on [0, h] for cubics s: at the ends or where the derivative vanishes."""
     c0, c1, c2, c3 = state[:, 0] - value, state[:, 1] - slope, state[:, 2] / 2, jerk / 6
     root = np.sqrt(np.maximum(c2 * c2 - 3 * c1 * c3, 0.0))
     # both roots of c1 + 2 c2 u + 3 c3 u^2, written so that neither loses its digits
@@ -91,6 +81,4 @@ def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) ->
     candidates = np.stack([np.zeros_like(h), h, u1, u2])
     candidates = np.where(np.isfinite(candidates), np.clip(candidates, 0.0, h), 0.0)
     values = c0 + candidates * (c1 + candidates * (c2 + candidates * c3))
-    best = np.argmax(values, axis=0)
-    column = np.arange(len(h))
-    return values[best, column], candidates[best, column]
+    return np.asarray(values.max(axis=0))

@@ -86,4 +86,3 @@ def test_a_peak_between_knots_is_seen():
     bound = Window(0, np.array([0.0, 2.0]), np.array([[5.0, 5.0]]), np.array([[0.0, 2.0]]))
     # the line t lies above t^2 / 2 by at most 1/2, at t = 1
     assert excess(profile, bound).under_high == pytest.approx(0.5, abs=1e-12)
-    assert excess(profile, bound).under_time == pytest.approx(1.0, abs=1e-9)
