@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from coord.alone.inverse import time_at
 from coord.model.arrays import Array
-from coord.model.profile import VelocityProfile
+from coord.model.profile import VelocityProfile, integrate
 from coord.model.robot import Limits
 
 
@@ -47,11 +48,8 @@ def landing(limits: Limits) -> Ramp:
 def _ramp(speed: float, acceleration: float, jerk: float) -> Ramp:
     rise = min(acceleration / jerk, math.sqrt(speed / jerk))
     hold = max(speed / (jerk * rise) - rise, 0.0)
-    times, states, jerks = [0.0], [(0.0, 0.0, 0.0)], []
-    for h, j in ((rise, jerk), (hold, 0.0), (rise, -jerk)):
-        if h > 0:
-            s, v, a = states[-1]
-            states.append((s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j))
-            times.append(times[-1] + h)
-            jerks.append(j)
+    phases = [(h, j) for h, j in ((rise, jerk), (hold, 0.0), (rise, -jerk)) if h > 0]
+    durations, jerks = [h for h, _ in phases], [j for _, j in phases]
+    states = integrate((0.0, 0.0, 0.0), durations, jerks)
+    times = [0.0, *itertools.accumulate(durations)]
     return Ramp(VelocityProfile(times, states, jerks), speed)  # type: ignore[arg-type]

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import shapely
 
 from coord.geometry.growth import Grown
+from coord.geometry.shapes import Geometry
 from coord.model.arrays import Array
 
 #: [m] Contact is no hit: a tangent touches the disc it leaves.
@@ -31,24 +32,11 @@ class Floor:
 
     def hit_parts(self, segments: Array) -> npt.NDArray[np.intp]:
         """Pairs (k, 2) of a segment's index and a part's, where segments (n, 4) come too near to a part."""
-        if not len(segments) or not len(self.grown.parts):
-            return np.empty((0, 2), dtype=np.intp)
-        lines = shapely.linestrings(segments.reshape(-1, 2, 2))
-        line, part = self._tree.query(lines, predicate="intersects")
-        near = shapely.dwithin(self.grown.parts[part], lines[line], np.maximum(self.rho[part] - _TOUCH, 0.0))
-        return np.stack([line[near], part[near]], axis=1)
+        return _near_pairs(self._tree, self.grown.parts, self.rho, segments)
 
     def is_hit(self, segments: Array, errors: Array) -> npt.NDArray[np.bool_]:
         """Whether segments (n, 4), each widened by its error (n,) [m], come too near to any part."""
-        hit = np.zeros(len(segments), dtype=np.bool_)
-        if len(segments) and len(self.grown.parts):
-            lines = shapely.linestrings(segments.reshape(-1, 2, 2))
-            low, high = np.minimum(segments[:, :2], segments[:, 2:]), np.maximum(segments[:, :2], segments[:, 2:])
-            boxes = shapely.box(*(low - errors[:, None]).T, *(high + errors[:, None]).T)
-            line, part = self._tree.query(boxes, predicate="intersects")
-            far = np.maximum(self.rho[part] + errors[line] - _TOUCH, 0.0)
-            np.logical_or.at(hit, line, shapely.dwithin(self.grown.parts[part], lines[line], far))
-        return hit
+        return _any(len(segments), _near_pairs(self._tree, self.grown.parts, self.rho, segments, errors))
 
     def near_parts(self, box: tuple[float, float, float, float]) -> npt.NDArray[np.intp]:
         """Parts whose grown boxes meet a box, ascending."""
@@ -93,13 +81,30 @@ class Screen:
 
     def is_hit(self, segments: Array) -> npt.NDArray[np.bool_]:
         """Whether segments (n, 4) come too near to any of the parts."""
-        hit = np.zeros(len(segments), dtype=np.bool_)
-        if len(segments) and len(self._parts):
-            lines = shapely.linestrings(segments.reshape(-1, 2, 2))
-            line, part = self._tree.query(lines, predicate="intersects")
-            near = shapely.dwithin(self._parts[part], lines[line], np.maximum(self._rho[part] - _TOUCH, 0.0))
-            hit[line[near]] = True
-        return hit
+        return _any(len(segments), _near_pairs(self._tree, self._parts, self._rho, segments))
+
+
+def _near_pairs(
+    tree: shapely.STRtree, parts: Geometry, rho: Array, segments: Array, errors: Array | None = None
+) -> npt.NDArray[np.intp]:
+    """Pairs (k, 2) of a segment (n, 4) and an indexed part nearer than the part's rho and the segment's error."""
+    if not len(segments) or not len(parts):
+        return np.empty((0, 2), dtype=np.intp)
+    lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+    probes = lines
+    if errors is not None:
+        low, high = np.minimum(segments[:, :2], segments[:, 2:]), np.maximum(segments[:, :2], segments[:, 2:])
+        probes = shapely.box(*(low - errors[:, None]).T, *(high + errors[:, None]).T)
+    line, part = tree.query(probes, predicate="intersects")
+    far = rho[part] if errors is None else rho[part] + errors[line]
+    near = shapely.dwithin(parts[part], lines[line], np.maximum(far - _TOUCH, 0.0))
+    return np.stack([line[near], part[near]], axis=1)
+
+
+def _any(count: int, pairs: npt.NDArray[np.intp]) -> npt.NDArray[np.bool_]:
+    hit = np.zeros(count, dtype=np.bool_)
+    hit[pairs[:, 0]] = True
+    return hit
 
 
 def _boxes(grown: Grown, rho: Array) -> npt.NDArray[np.object_]:

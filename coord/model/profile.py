@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from coord.model.arrays import Array, frozen
+
+#: arc length [m], speed [m/s], acceleration [m/s2]
+State: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,3 +74,12 @@ def advance(states: Array, jerks: Array, durations: Array) -> Array:
     s, v, a = states.T
     j, h = jerks, durations
     return np.stack([s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j], axis=1)
+
+
+def integrate(start: State, durations: Iterable[float], jerks: Iterable[float]) -> list[State]:
+    """The states at all knots of phases of constant jerk that follow each other, the start first."""
+    states = [start]
+    for h, j in zip(durations, jerks, strict=True):
+        s, v, a = states[-1]
+        states.append((s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j))
+    return states

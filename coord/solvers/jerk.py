@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
-from typing import Any, TypeAlias
+from typing import Any
 
 import ruckig
 
 from coord.errors import SolverError
-from coord.model.profile import VelocityProfile
+from coord.model.profile import State, VelocityProfile, integrate
 from coord.model.robot import Limits
-
-#: arc length [m], speed [m/s], acceleration [m/s2]
-State: TypeAlias = tuple[float, float, float]
 
 #: [s] Phases shorter than this are dropped: they carry no motion, and knots must stay distinct.
 SHORTEST_PHASE = 1e-10
@@ -131,18 +129,12 @@ def _phases(trajectory: Any) -> Iterator[tuple[float, float]]:
 
 
 def _profile(start: State, goal: State, trajectory: Any) -> VelocityProfile | None:
-    times, states, jerks = [0.0], [start], []
-    for duration, jerk in _phases(trajectory):
-        if duration < SHORTEST_PHASE:
-            continue
-        h, j = float(duration), float(jerk)
-        s, v, a = states[-1]
-        states.append((s + h * (v + h * (a / 2 + h * j / 6)), v + h * (a + h * j / 2), a + h * j))
-        times.append(times[-1] + h)
-        jerks.append(j)
+    phases = [(float(h), float(j)) for h, j in _phases(trajectory) if h >= SHORTEST_PHASE]
+    durations, jerks = [h for h, _ in phases], [j for _, j in phases]
+    states = integrate(start, durations, jerks)
     if any(abs(got - asked) > END_SLACK for got, asked in zip(states[-1], goal, strict=True)):
         return None
     if min(v for _, v, _ in states) < -END_SLACK:
         return None
     states[-1] = goal
-    return VelocityProfile(times, states, jerks)  # type: ignore[arg-type]
+    return VelocityProfile([0.0, *itertools.accumulate(durations)], states, jerks)  # type: ignore[arg-type]

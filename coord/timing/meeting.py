@@ -60,9 +60,20 @@ class Meeting:
 
     def is_avoided(self, profile: VelocityProfile) -> bool:
         """Whether a look at the box alone shows that a profile does not meet the other here."""
+        return self._side(profile) is not None
+
+    def passes_after(self, profile: VelocityProfile) -> bool:
+        """Whether a profile that is clear of the other passes after it, not before."""
+        side = self._side(profile)
+        return excess(profile, self.window).passes_after if side is None else side
+
+    def _side(self, profile: VelocityProfile) -> bool | None:
+        """Whether the box alone shows that a profile passes after (True) or before (False); None where it does not."""
         first, last, low, high = self.box
         s = profile.state([first, min(last, max(profile.arrival, first))])[:, 0]
-        return bool(s[1] <= low or s[0] >= high)
+        if s[1] <= low:
+            return True
+        return False if s[0] >= high else None
 
     def excess(self, profile: VelocityProfile) -> Excess | None:
         """How far the profile is from passing on one side; None where the box shows that it does."""

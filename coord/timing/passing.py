@@ -242,14 +242,6 @@ def _keeps_choices(search: _Search, chosen: dict[int, bool], profile: VelocityPr
 
 
 def _finished(profile: VelocityProfile, meetings: list[Meeting], how: str, nodes: int, is_open: bool) -> Timing:
-    after, before = set(), set()
-    for meeting in meetings:
-        s = profile.state([meeting.box[0], min(meeting.box[1], max(profile.arrival, meeting.box[0]))])[:, 0]
-        if s[1] <= meeting.box[2]:
-            after.add(meeting.other)
-        elif s[0] >= meeting.box[3]:
-            before.add(meeting.other)
-        else:
-            gap = meeting.excess(profile)
-            (after if gap is None or gap.passes_after else before).add(meeting.other)
-    return Timing(profile, tuple(sorted(after)), tuple(sorted(before - after)), how, nodes, is_open)
+    after = {meeting.other for meeting in meetings if meeting.passes_after(profile)}
+    before = {meeting.other for meeting in meetings} - after
+    return Timing(profile, tuple(sorted(after)), tuple(sorted(before)), how, nodes, is_open)

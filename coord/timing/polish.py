@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from coord.model.arrays import Array
-from coord.model.profile import VelocityProfile
+from coord.model.profile import VelocityProfile, integrate
 
 #: [s] Phases shorter than this are dropped; the correction makes up for them.
 _SHORTEST = 1e-7
@@ -29,33 +29,19 @@ def land_exactly(durations: Array, jerks: Array, length: float, departure: float
     scale = np.abs(effect).max(axis=1)
     rows = effect / scale[:, None]
     for _ in range(3):
-        states = _integrate(h, j)
+        states = integrate((0.0, 0.0, 0.0), h.tolist(), j.tolist())
         s, v, a = states[-1]
         gap = [(length - s) / scale[0], -v / scale[1], -a / scale[2]]
         change = _least_norm(rows, gap)
         if change is None:
             return None
         j = j + change
-    states = _integrate(h, j)
+    states = integrate((0.0, 0.0, 0.0), h.tolist(), j.tolist())
     if max(abs(states[-1][0] - length), abs(states[-1][1]), abs(states[-1][2])) > 1e-10:
         return None
     states[-1] = (length, 0.0, 0.0)
     times = departure + np.concatenate([[0.0], np.cumsum(h)])
     return VelocityProfile(times, states, j)  # type: ignore[arg-type]
-
-
-def _integrate(h: Array, j: Array) -> list[tuple[float, float, float]]:
-    states = [(0.0, 0.0, 0.0)]
-    for duration, jerk in zip(h.tolist(), j.tolist(), strict=True):
-        s, v, a = states[-1]
-        states.append(
-            (
-                s + duration * (v + duration * (a / 2 + duration * jerk / 6)),
-                v + duration * (a + duration * jerk / 2),
-                a + duration * jerk,
-            )
-        )
-    return states
 
 
 def _least_norm(rows: Array, gap: list[float]) -> Array | None:
