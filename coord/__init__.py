@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from coord.errors import BadFileError as BadFileError
     from coord.errors import CoordError as CoordError
     from coord.errors import InvalidValueError as InvalidValueError
+    from coord.model.footprint import Footprint as Footprint
     from coord.model.obstacle import Circle as Circle
     from coord.model.obstacle import Polygon as Polygon
     from coord.model.obstacle import rectangle as rectangle
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from coord.model.result import Plan as Plan
     from coord.model.result import Result as Result
     from coord.model.result import RobotPlan as RobotPlan
-    from coord.model.robot import Footprint as Footprint
     from coord.model.robot import Limits as Limits
     from coord.model.robot import Robot as Robot
     from coord.output.files import read_plan as read_plan
@@ -43,7 +43,7 @@ _HOMES: Final = {
     "Circle": "coord.model.obstacle",
     "CoordError": "coord.errors",
     "Diagnosis": "coord.model.result",
-    "Footprint": "coord.model.robot",
+    "Footprint": "coord.model.footprint",
     "InvalidValueError": "coord.errors",
     "Limits": "coord.model.robot",
     "Options": "coord.model.options",

@@ -7,26 +7,9 @@ from dataclasses import dataclass
 
 from coord.errors import InvalidValueError
 from coord.model.arrays import Point
+from coord.model.footprint import Footprint
 from coord.model.rules import range_fault
-from coord.tolerances import LARGEST_COORDINATE, LARGEST_LIMIT, LATEST_RELEASE, SMALLEST_LIMIT, SMALLEST_RADIUS
-
-
-@dataclass(frozen=True, slots=True)
-class Footprint:
-    """The floor a robot covers: a disc about its reference point.
-
-    Raises
-    ------
-    InvalidValueError
-        When the radius [m] is not positive, or larger than any floor.
-    """
-
-    radius: float
-
-    def __post_init__(self) -> None:
-        fault = range_fault("the disc's radius", self.radius, " m", SMALLEST_RADIUS, LARGEST_COORDINATE)
-        if fault:
-            raise InvalidValueError([("footprint", fault)])
+from coord.tolerances import LARGEST_COORDINATE, LARGEST_LIMIT, LATEST_RELEASE, SMALLEST_LIMIT
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +49,10 @@ class Robot:
     priority : smaller goes first; None comes after all that have one.
     release : earliest departure [s].
     weight : for the objective "weighted".
+    side : "left" or "right", seen along the straight line, of whatever blocks that line; "quickest": by time.
+    via : places to pass in this order [m].
+    path : a given polyline from start to goal [m], instead of ``side`` and ``via``; none: a path is sought.
+    corner_radius : the corners of a given path become fillets of up to this radius [m].
     """
 
     name: str
@@ -76,6 +63,10 @@ class Robot:
     priority: float | None = None
     release: float = 0.0
     weight: float = 1.0
+    side: str = "quickest"
+    via: tuple[Point, ...] = ()
+    path: tuple[Point, ...] = ()
+    corner_radius: float = 0.2
 
     def __post_init__(self) -> None:
         faults = []
@@ -90,5 +81,24 @@ class Robot:
             faults.append(("release", fault))
         if fault := range_fault("weight", self.weight, "", 0.0, LARGEST_COORDINATE):
             faults.append(("weight", fault))
+        if fault := range_fault("corner_radius", self.corner_radius, " m", 0.0, LARGEST_COORDINATE):
+            faults.append(("corner_radius", fault))
+        faults += self._way_faults()
         if faults:
             raise InvalidValueError(faults)
+
+    def _way_faults(self) -> list[tuple[str, str]]:
+        faults = []
+        if self.side not in ("quickest", "left", "right"):
+            faults.append(("side", f'side must be "quickest", "left" or "right" (got "{self.side}")'))
+        for field in ("via", "path"):
+            points = getattr(self, field)
+            if not all(math.isfinite(value) for point in points for value in point):
+                faults.append((field, f"{field} must be points of two finite numbers [m]"))
+        if not self.path:
+            return faults
+        if self.via or self.side != "quickest":
+            faults.append(("path", "a robot with a given path has neither side nor via: the path says it all"))
+        if len(self.path) < 2 or self.path[0] != self.start or self.path[-1] != self.goal:
+            faults.append(("path", "a given path begins at the robot's start and ends at its goal"))
+        return faults

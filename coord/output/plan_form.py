@@ -9,12 +9,13 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from coord.errors import BadFileError, Fault, InvalidValueError
 from coord.model.arrays import frozen
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle, Polygon
 from coord.model.path import Path
 from coord.model.problem import Problem, Workspace
 from coord.model.profile import VelocityProfile
 from coord.model.result import BlockingArc, Plan, RobotPlan
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 
 
 def _float(value: object) -> object:

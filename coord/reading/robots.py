@@ -8,7 +8,8 @@ from typing import Any
 
 from coord.errors import InvalidValueError
 from coord.model.arrays import Point
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.footprint import Footprint
+from coord.model.robot import Limits, Robot
 from coord.reading.form import DefaultsForm, RobotForm, sound_fields
 from coord.reading.locate import KeyPath
 from coord.reading.not_yet import without_refused

@@ -8,8 +8,9 @@ import pytest
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import chords
 from coord.coordination.blocking import blocking_arcs
+from coord.model.footprint import Footprint
 from coord.model.path import straight
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 

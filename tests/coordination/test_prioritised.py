@@ -6,8 +6,9 @@ import dataclasses
 
 import pytest
 
+from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.plan import plan
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)

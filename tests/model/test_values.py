@@ -12,11 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coord.errors import BadFileError, Fault, InvalidValueError, NoPlanError
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle, signed_area
 from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.result import Diagnosis
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 NAN, INF = math.nan, math.inf

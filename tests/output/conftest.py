@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 from coord.model.path import Path, straight
 from coord.model.problem import Problem, Workspace
 from coord.model.profile import VelocityProfile
 from coord.model.result import BlockingArc, Clearance, Diagnosis, Plan, Result, RobotPlan
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.output.plan_file import serialise
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)

@@ -3,9 +3,9 @@ from dataclasses import replace
 
 import pytest
 
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle
 from coord.model.result import Plan
-from coord.model.robot import Footprint
 from coord.output.compare import differences
 from coord.output.plan_file import parse, serialise
 

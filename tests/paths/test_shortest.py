@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from coord.errors import NoPlanError
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.paths.shortest import shortest_paths
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)

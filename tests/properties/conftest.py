@@ -7,9 +7,10 @@ import pytest
 import shapely
 from hypothesis import strategies as st
 
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, rectangle
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 
 SIZE = 14.0
 _tenths = st.integers(3, 20).map(lambda n: n / 10)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from coord.errors import CoordError
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle
 from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.plan import plan
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)

@@ -13,8 +13,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from coord.errors import BadFileError, Fault
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.reading.problem_file import digest, read_problem
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from coord.model.robot import Footprint, Limits
+from coord.model.footprint import Footprint
+from coord.model.robot import Limits
 
 HEAD = 'format = "coord-problem/1"\n[workspace]\nbounds = [0, 0, 10, 10]\n'
 ROBOT = '[[robots]]\nname = "a"\nstart = [1, 1]\ngoal = [9, 1]\n'

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.plan import plan
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 import coord.timing.delay
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.plan import plan
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from coord.alone.check import keeps_limits
+from coord.model.footprint import Footprint
 from coord.model.path import straight
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.timing.delay import Contact
 from coord.timing.ego import ego
 from coord.timing.splice import spliced

@@ -8,8 +8,9 @@ import casadi
 import numpy as np
 import pytest
 
+from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 
 LARGE = Workspace((-40.0, -40.0, 60.0, 60.0), 0.05)
 

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from coord.alone.fastest import fastest
 from coord.alone.inverse import time_at
+from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.plan import plan
 
 LARGE = Workspace((-500.0, -500.0, 500.0, 500.0), 0.05)

@@ -7,8 +7,9 @@ import pytest
 
 from coord.alone.check import keeps_limits
 from coord.conflicts.window import Window
+from coord.model.footprint import Footprint
 from coord.model.path import straight
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.timing.clear import excess
 from coord.timing.ego import ego
 from coord.timing.program import Tube, through_tube

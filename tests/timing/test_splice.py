@@ -6,8 +6,9 @@ import numpy as np
 
 from coord.alone.check import keeps_limits
 from coord.alone.inverse import time_at
+from coord.model.footprint import Footprint
 from coord.model.path import Path, straight
-from coord.model.robot import Footprint, Limits, Robot
+from coord.model.robot import Limits, Robot
 from coord.timing.delay import Contact
 from coord.timing.ego import ego
 from coord.timing.splice import spliced

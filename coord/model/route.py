@@ -1,0 +1,68 @@
+"""The geometric answer for one robot: its path, why this one, and what the other side would have cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coord.model.path import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """The exponential y = A exp(B x) fitted to one flank of a detour, by least squares in ln y.
+
+    ``flank`` : "rise" or "fall"; x [m] runs along the straight line from the detour's middle, y [m] is the
+    distance from it; ``A`` [m], ``B`` [1/m]; ``r_squared`` [1] of the fit in ln y.
+    """
+
+    flank: str
+    A: float
+    B: float
+    r_squared: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shaped:
+    """A skeleton made into a path that can be driven; ``remarks`` say in words where a shape gave up, and why."""
+
+    path: Path
+    fits: tuple[Fit, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """One side of what blocks the straight line.
+
+    ``side`` : "left" or "right", seen from start to goal; ``path`` None where there is no such way, and
+    ``reason`` then says why; ``time`` [s] alone, from rest to rest.
+    """
+
+    side: str
+    path: Path | None
+    time: float | None
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Route:
+    """How a robot gets from its start to its goal.
+
+    Parameters
+    ----------
+    path : the path chosen; ``time`` [s] alone, from rest to rest.
+    shape : of the turns: "fitted", "exponential", "taut", "follow"; "straight" where nothing is in the way;
+        "given" for a path out of the problem file.
+    side : "left", "right", "both" (left of some obstacles and right of others), "" where the line is free.
+    least_length : length [m] that no path on this side falls below.
+    ways : the sides that were compared; ``fits`` and ``remarks`` : of the shape.
+    """
+
+    path: Path
+    time: float
+    shape: str
+    side: str
+    least_length: float
+    ways: tuple[Way, ...] = ()
+    fits: tuple[Fit, ...] = ()
+    remarks: tuple[str, ...] = ()
