@@ -49,22 +49,25 @@ def chained(caps: SpeedLimit, limits: Limits) -> VelocityProfile | None:
     return borders.profile()
 
 
-def quick_estimate(caps: SpeedLimit, limits: Limits) -> float:
-    """The time [s] of the chain before its borders are improved: a few per cent too long, and quick to have."""
-    borders = _Borders(caps, limits)
+def quick_estimate(caps: SpeedLimit, limits: Limits, time_of: LinkTimes | None = None) -> float:
+    """The time [s] of the chain before its borders are improved: a few per cent too long, and quick to have.
+
+    ``time_of`` : of the same limits, when many similar paths are compared.
+    """
+    borders = _Borders(caps, limits, time_of)
     return math.fsum(borders.times) if borders.lower_until_possible() else math.inf
 
 
 class _Borders:
     """Speed and acceleration at the borders of sections, and the times of the links between them."""
 
-    def __init__(self, caps: SpeedLimit, limits: Limits) -> None:
+    def __init__(self, caps: SpeedLimit, limits: Limits, time_of: LinkTimes | None = None) -> None:
         self.limits = limits
         self.caps = caps.caps.tolist()
         self.lengths = np.diff(caps.ends, prepend=0.0).tolist()
         self.top = [0.0, *np.minimum(caps.caps[:-1], caps.caps[1:]).tolist(), 0.0]
         self.states = [(speed, 0.0) for speed in self.top]
-        self.time_of = LinkTimes(limits)
+        self.time_of = time_of or LinkTimes(limits)
         self.times = [0.0] * len(self.caps)
 
     def link(self, m: int, start: tuple[float, float], goal: tuple[float, float]) -> float:

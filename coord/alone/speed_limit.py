@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,14 +43,19 @@ class SpeedLimit:
 
 
 def speed_limit(path: Path, limits: Limits, cap_ratio: float = 1.2) -> SpeedLimit:
-    """The caps that the lateral acceleration sets along a path.
+    """The caps that the lateral acceleration sets along a path; see ``speed_limit_of``."""
+    return speed_limit_of(path.pieces.tolist(), limits, cap_ratio)
+
+
+def speed_limit_of(pieces: Iterable[tuple[float, float, float]], limits: Limits, cap_ratio: float) -> SpeedLimit:
+    """The caps along the pieces of a path: length [m], curvature [1/m] at the start and at the end of each.
 
     A clothoid is cut where its cap has changed by the factor ``cap_ratio``; within a cut the lowest cap holds.
     """
     ends: list[float] = []
     caps: list[float] = []
     position = 0.0
-    for length, k0, k1 in path.pieces.tolist():
+    for length, k0, k1 in pieces:
         for cut, cap in _cuts(length, k0, k1, limits, cap_ratio):
             if caps and caps[-1] == cap:
                 ends[-1] = position + cut
@@ -57,8 +63,6 @@ def speed_limit(path: Path, limits: Limits, cap_ratio: float = 1.2) -> SpeedLimi
                 ends.append(position + cut)
                 caps.append(cap)
         position += length
-    if ends:
-        ends[-1] = path.length
     return SpeedLimit(frozen(ends), frozen(caps))
 
 

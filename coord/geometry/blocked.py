@@ -34,6 +34,16 @@ class Floor:
         """Pairs (k, 2) of a segment's index and a part's, where segments (n, 4) come too near to a part."""
         return _near_pairs(self._tree, self.grown.parts, self.rho, segments)
 
+    def parts_within(self, distance: float, segments: Array) -> npt.NDArray[np.intp]:
+        """Parts whose grown boxes come so near [m] to any of the segments (n, 4), ascending."""
+        lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+        return np.unique(self._tree.query(lines, predicate="dwithin", distance=distance)[1])
+
+    def sizes(self, parts: npt.NDArray[np.intp]) -> Array:
+        """The smaller sides (n,) [m] of the grown boxes of parts."""
+        bounds = shapely.bounds(self.boxes[parts])
+        return np.asarray((bounds[:, 2:] - bounds[:, :2]).min(axis=1))
+
     def is_hit(self, segments: Array, errors: Array) -> npt.NDArray[np.bool_]:
         """Whether segments (n, 4), each widened by its error (n,) [m], come too near to any part."""
         return _any(len(segments), _near_pairs(self._tree, self.grown.parts, self.rho, segments, errors))
@@ -44,31 +54,39 @@ class Floor:
             return np.empty(0, dtype=np.intp)
         return np.sort(self._tree.query(shapely.box(*box)))
 
-    def blocked_angles(self, center: Array, radius: float, chosen: npt.NDArray[np.bool_]) -> Array:
-        """Open stretches (k, 2) [rad] of a circle that come too near to the chosen parts or leave the box.
+    def edges_of(self, parts: npt.NDArray[np.intp]) -> tuple[Array, Array]:
+        """Segments (e, 4) [m] of the cores of parts, and the distance (e,) [m] to keep from each."""
+        index = self.grown.edges_of(parts)
+        return self.grown.edges[index], self.rho[self.grown.edge_parts[index]]
 
-        Each begins in [0, 2 pi) and may end beyond 2 pi. Exact: the circle meets the boundary of a segment
-        grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
-        it is wholly inside or wholly outside, which its middle tells.
-        """
-        of_chosen = chosen[self.grown.edge_parts]
-        edges, rho = self.grown.edges[of_chosen], self.rho[self.grown.edge_parts[of_chosen]]
-        low, high = np.minimum(edges[:, :2], edges[:, 2:]), np.maximum(edges[:, :2], edges[:, 2:])
-        reach = (rho + radius)[:, None]
-        near = np.all((low - reach < center) & (center < high + reach), axis=1)
-        edges, rho = edges[near], rho[near]
-        angles = np.concatenate(
-            [_segment_angles(center, radius, edges, rho), _box_angles(center, radius, self.grown.box)]
-        )
-        cuts = np.unique(angles[np.isfinite(angles)] % (2 * np.pi))
-        if not len(cuts):
-            cuts = np.array([0.0])
-        ends = np.append(cuts[1:], cuts[0] + 2 * np.pi)
-        middle = (cuts + ends) / 2
-        at = center + radius * np.stack([np.cos(middle), np.sin(middle)], axis=1)
-        inside = (_segment_distance(at, edges) < rho[None] - _TOUCH).any(axis=1) | _outside(at, self.grown.box)
-        inside &= ends - cuts > _SLIVER
-        return _joined(cuts[inside], ends[inside])
+
+def blocked_angles(
+    center: Array, radius: float, edges: Array, rho: Array, box: tuple[float, float, float, float]
+) -> Array:
+    """Open stretches (k, 2) [rad] of a circle that come nearer than rho (e,) to segments (e, 4) or leave the box.
+
+    Each begins in [0, 2 pi) and may end beyond 2 pi. Exact: the circle meets the boundary of a segment
+    grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
+    it is wholly inside or wholly outside, which its middle tells.
+    """
+    low, high = np.minimum(edges[:, :2], edges[:, 2:]), np.maximum(edges[:, :2], edges[:, 2:])
+    reach = (rho + radius)[:, None]
+    near = ((low - reach < center) & (center < high + reach)).all(axis=1)
+    edges, rho = edges[near], rho[near]
+    angles = _box_angles(center, radius, box)
+    if len(edges):
+        angles = np.concatenate([_segment_angles(center, radius, edges, rho), angles])
+    elif not len(angles):
+        return np.empty((0, 2))
+    cuts = np.unique(angles[np.isfinite(angles)] % (2 * np.pi))
+    if not len(cuts):
+        cuts = np.array([0.0])
+    ends = np.append(cuts[1:], cuts[0] + 2 * np.pi)
+    middle = (cuts + ends) / 2
+    at = center + radius * np.stack([np.cos(middle), np.sin(middle)], axis=1)
+    inside = (_segment_distance(at, edges) < rho[None] - _TOUCH).any(axis=1) | _outside(at, box)
+    inside &= ends - cuts > _SLIVER
+    return _joined(cuts[inside], ends[inside])
 
 
 class Screen:

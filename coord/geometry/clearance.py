@@ -19,18 +19,21 @@ _COARSE = 1e-2
 _FINE = 5e-7
 
 
-def keeps_distance(floor: Floor, path: Path) -> bool:
+def keeps_distance(floor: Floor, path: Path, first: float = 0.0, last: float = math.inf) -> bool:
     """Whether the path stays in the box and keeps every part's distance, with no exception between samples.
+
+    Pieces that end before the arc length ``first`` or begin after ``last`` [m] are left out.
 
     A point of a bend lies within max|curvature| h^2 / 8 of the chord over its arc length h. A bend that
     touches may be refused, if it comes nearer than about a millionth of a metre.
     """
     bends = np.abs(path.pieces[:, 1:]).max(axis=1, initial=0.0)
-    lines = np.flatnonzero(bends == 0)
+    asked = (path.breaks[1:] >= first) & (path.breaks[:-1] <= last)
+    lines = np.flatnonzero(asked & (bends == 0))
     segments = np.hstack([path.poses[lines, :2], path.poses[lines + 1, :2]])
     if len(floor.hit_parts(segments)) or np.any(_leaves_box(floor, segments, 0.0)):
         return False
-    s, bend = _first_chords(path, bends)
+    s, bend = _first_chords(path, np.where(asked, bends, 0.0))
     while len(s):
         error = bend * (s[:, 1] - s[:, 0]) ** 2 / 8
         ends = path.point(s.ravel()).reshape(-1, 4)

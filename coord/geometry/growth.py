@@ -16,6 +16,7 @@ import shapely
 
 from coord.geometry.shapes import Geometry, core
 from coord.model.arrays import Array
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
 
 #: Cores with more vertices are halved until no part has more.
@@ -49,6 +50,7 @@ class Grown:
     parts : (m,) array of shapes; ``rho`` : (m,) distance [m] that the robot's centre keeps from each.
     corners : of all parts.
     edges : (e, 4) array [m], the segments of all parts (a point twice for a circle); ``edge_parts`` : (e,).
+    touching : (t, 2) pairs of parts that touch, in both orders, ascending.
     box : xmin, ymin, xmax, ymax [m] of the places where the robot's centre may be.
     """
 
@@ -57,29 +59,84 @@ class Grown:
     corners: Corners
     edges: Array
     edge_parts: npt.NDArray[np.intp]
+    touching: npt.NDArray[np.intp]
     box: tuple[float, float, float, float]
 
+    def near_siblings(self, chosen: npt.NDArray[np.intp], steps: int) -> npt.NDArray[np.intp]:
+        """The chosen parts and those that so many steps from part to touching part lead to, ascending."""
+        reached = np.unique(chosen)
+        for _ in range(steps):
+            index = _rows(self.touching[:, 0], reached)
+            reached = np.union1d(reached, self.touching[index, 1])
+        return reached
 
-def grow(obstacles: Sequence[Obstacle], reach: float, bounds: tuple[float, float, float, float]) -> Grown:
-    """Grow obstacles for a disc that keeps ``reach`` [m] (radius and clearance) from everything."""
+    def edges_of(self, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """Indices of the segments of some parts; a part's segments follow each other, in the order of the parts."""
+        return _rows(self.edge_parts, chosen)
+
+    def corners_of(self, chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """Indices of the corners of some parts."""
+        return _rows(self.corners.parts, chosen)
+
+
+def _rows(owners: npt.NDArray[np.intp], chosen: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Where the chosen stand in an ascending list of owners."""
+    first, last = np.searchsorted(owners, chosen), np.searchsorted(owners, chosen, side="right")
+    ranges = [np.arange(a, b) for a, b in zip(first.tolist(), last.tolist(), strict=True)]
+    return np.concatenate([np.empty(0, dtype=np.intp), *ranges])
+
+
+def grow(
+    obstacles: Sequence[Obstacle], footprint: Footprint, clearance: float, bounds: tuple[float, float, float, float]
+) -> Grown:
+    """Grow obstacles for a robot that keeps a clearance [m] from everything.
+
+    For a disc, and for a polygon that turns with the path, the cores are the obstacles and the radius is added
+    to the distance. For a polygon K that keeps its heading they are Minkowski sums with -K: the places of its
+    reference point at which it would touch the obstacle.
+    """
+    K, reach = np.array(footprint.core), footprint.margin + clearance
     round_ones = [obstacle for obstacle in obstacles if isinstance(obstacle, Circle)]
-    polygons = [core(obstacle)[0] for obstacle in obstacles if not isinstance(obstacle, Circle)]
-    shapes = [part for whole in _merged(polygons) for part in _cut(whole)]
-    parts = np.array([*shapes, *(shapely.Point(circle.center) for circle in round_ones)], dtype=object)
+    polygons = [_widened(core(obstacle)[0], K) for obstacle in obstacles if not isinstance(obstacle, Circle)]
+    shapes: list[Geometry] = []
+    owners: list[int] = []
+    for whole in _merged(polygons):
+        pieces = _cut(whole)
+        owners += [len(owners)] * len(pieces)
+        shapes += pieces
+    centers = np.array([circle.center for circle in round_ones]).reshape(-1, 1, 2)
+    parts = np.array([*shapes, *shapely.convex_hull(shapely.multipoints(centers - K))], dtype=object)
     rho = np.array([reach] * len(shapes) + [reach + circle.radius for circle in round_ones])
-    edges, owners = _edges(parts)
+    outlines = _Outlines.of(parts)
+    edges, edge_parts = outlines.edges()
+    (left, lower), (right, upper) = K.min(axis=0), K.max(axis=0)
     xmin, ymin, xmax, ymax = bounds
-    box = (xmin + reach, ymin + reach, xmax - reach, ymax - reach)
-    return Grown(parts, rho, _corners(parts), edges, owners, box)
+    box = (xmin - left + reach, ymin - lower + reach, xmax - right - reach, ymax - upper - reach)
+    siblings = np.array(owners + list(range(len(owners), len(parts))), dtype=np.intp)
+    return Grown(parts, rho, outlines.corners(), edges, edge_parts, _touching(parts, siblings), box)
+
+
+def _widened(polygon: Geometry, K: Array) -> Geometry:
+    """The Minkowski sum of a polygon with -K; exact for concave outlines and holes, since K holds the origin."""
+    if len(K) == 1:
+        return polygon
+    swept = [polygon]
+    for ring in shapely.get_rings(polygon):
+        along = shapely.get_coordinates(ring)
+        ends = np.stack([along[:-1], along[1:]], axis=1)[:, :, None] - K  # (edges, 2, corners of K, 2)
+        swept += list(shapely.convex_hull(shapely.multipoints(ends.reshape(len(ends), -1, 2))))
+    return shapely.union_all(swept)
 
 
 def _merged(polygons: list[Geometry]) -> list[Geometry]:
-    """Polygons united where they touch or overlap; those alone are left as they are, vertex by vertex."""
-    if not polygons:
-        return []
-    tree = shapely.STRtree(polygons)
-    a, b = tree.query(polygons, predicate="intersects")
-    label = np.arange(len(polygons))
+    """Small polygons united where they touch or overlap; others are left as they are, vertex by vertex.
+
+    It saves corners that no path can turn round. What is left apart is as impassable as what is united.
+    """
+    small = np.array([shapely.get_num_coordinates(polygon) <= _MOST_VERTICES for polygon in polygons], dtype=np.bool_)
+    shapes = np.array(polygons, dtype=object)
+    a, b = shapely.STRtree(shapes[small]).query(shapes[small], predicate="intersects")
+    label = np.arange(int(small.sum()))
     while True:
         least = label.copy()
         np.minimum.at(least, a, label[b])
@@ -87,10 +144,10 @@ def _merged(polygons: list[Geometry]) -> list[Geometry]:
         if np.array_equal(least, label):
             break
         label = least
-    merged = []
+    merged = list(shapes[~small])
     for group in np.unique(label).tolist():
-        members = [polygons[k] for k in np.flatnonzero(label == group)]
-        merged += list(shapely.get_parts(shapely.union_all(members))) if len(members) > 1 else members
+        members = shapes[small][label == group]
+        merged += list(shapely.get_parts(shapely.union_all(members))) if len(members) > 1 else list(members)
     return merged
 
 
@@ -105,48 +162,65 @@ def _cut(whole: Geometry) -> list[Geometry]:
     else:
         middle = (ymin + ymax) / 2
         halves = [(xmin, ymin, xmax, middle), (xmin, middle, xmax, ymax)]
-    pieces = [shapely.intersection(whole, shapely.box(*half)) for half in halves]
+    pieces = [_clipped(whole, half) for half in halves]
     polygons = [part for piece in pieces for part in shapely.get_parts(piece) if shapely.get_dimensions(part) == 2]
     return [part for polygon in polygons for part in _cut(polygon)]
 
 
-def _corners(parts: Geometry) -> Corners:
-    rows: list[tuple[float, float, float, float, int]] = []
-    for index, part in enumerate(parts):
-        if shapely.get_dimensions(part) == 0:
-            rows.append((shapely.get_x(part), shapely.get_y(part), 0.0, 2 * np.pi, index))
-            continue
-        for ring in _rings(part):
-            along = np.roll(ring, -1, axis=0) - ring
-            before = np.roll(along, 1, axis=0)
-            turn = np.arctan2(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0], (before * along).sum(axis=1))
-            first = np.arctan2(-before[:, 0], before[:, 1])  # outward normal: the edge turned clockwise
-            convex = turn > 1e-12
-            rows += [
-                (*place, angle, span, index)
-                for place, angle, span in zip(
-                    ring[convex].tolist(), first[convex].tolist(), turn[convex].tolist(), strict=True
-                )
-            ]
-    table = np.array(rows, dtype=np.float64).reshape(-1, 5)
-    return Corners(table[:, :2], table[:, 2], table[:, 3], table[:, 4].astype(np.intp))
+def _clipped(whole: Geometry, box: tuple[float, float, float, float]) -> Geometry:
+    """What of a polygon lies in a box; the quick way sometimes leaves outlines that touch themselves."""
+    quick = shapely.clip_by_rect(whole, *box)
+    return quick if shapely.is_valid(quick) else shapely.intersection(whole, shapely.box(*box))
 
 
-def _edges(parts: Geometry) -> tuple[Array, npt.NDArray[np.intp]]:
-    edges: list[Array] = []
-    for part in parts:
-        if shapely.get_dimensions(part) == 0:
-            point = shapely.get_coordinates(part)
-            edges.append(np.hstack([point, point]))
-        else:
-            edges.append(np.vstack([np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in _rings(part)]))
-    owners = np.repeat(np.arange(len(edges)), [len(own) for own in edges])
-    return np.vstack([*edges, np.empty((0, 4))]), owners.astype(np.intp)
+def _touching(parts: Geometry, siblings: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Pairs (t, 2) of parts of one whole whose boxes touch, in both orders, ascending."""
+    boxes = shapely.box(*shapely.bounds(parts).reshape(-1, 4).T) if len(parts) else parts
+    a, b = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    pairs = np.stack([a, b], axis=1)[(siblings[a] == siblings[b]) & (a != b)]
+    return np.asarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))], dtype=np.intp)
 
 
-def _rings(polygon: Geometry) -> list[Array]:
-    """Outline counter-clockwise and holes clockwise, without the repeated last vertex."""
-    oriented = shapely.orient_polygons(polygon)
-    rings = [shapely.get_exterior_ring(oriented)]
-    rings += [shapely.get_interior_ring(oriented, k) for k in range(shapely.get_num_interior_rings(oriented))]
-    return [shapely.get_coordinates(ring)[:-1] for ring in rings]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Outlines:
+    """All rings of all parts, obstacle to the left: (n, 2) points, the row of the next and the one before, the part."""
+
+    points: Array
+    following: npt.NDArray[np.intp]
+    preceding: npt.NDArray[np.intp]
+    parts: npt.NDArray[np.intp]
+
+    @classmethod
+    def of(cls, parts: Geometry) -> _Outlines:
+        """Of parts that are polygons or points; a point is a ring of one."""
+        is_point = shapely.get_dimensions(parts) == 0
+        rings, owner = shapely.get_rings(shapely.orient_polygons(parts), return_index=True)
+        points, ring = shapely.get_coordinates(rings, return_index=True)
+        closing = np.diff(ring, append=-1) != 0  # rings repeat their first point at the end
+        points, ring = points[~closing], ring[~closing]
+        points = np.vstack([points, shapely.get_coordinates(parts[is_point])])
+        ring = np.append(ring, len(rings) + np.arange(int(is_point.sum())))
+        owner = np.append(owner, np.flatnonzero(is_point))
+        if not len(points):
+            nothing = np.empty(0, dtype=np.intp)
+            return cls(points, nothing, nothing, nothing)
+        starts = np.flatnonzero(np.diff(ring, prepend=-1))
+        ends = np.append(starts[1:], len(ring)) - 1
+        following, preceding = np.arange(len(ring)) + 1, np.arange(len(ring)) - 1
+        following[ends], preceding[starts] = starts, ends
+        return cls(points, following, preceding, owner[ring].astype(np.intp))
+
+    def edges(self) -> tuple[Array, npt.NDArray[np.intp]]:
+        """Segments (n, 4) and their parts."""
+        return np.hstack([self.points, self.points[self.following]]), self.parts
+
+    def corners(self) -> Corners:
+        """The convex vertices with the cones of their outward normals."""
+        along = self.points[self.following] - self.points
+        before = along[self.preceding]
+        turn = np.arctan2(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0], (before * along).sum(axis=1))
+        first = np.arctan2(-before[:, 0], before[:, 1])  # outward normal: the edge turned clockwise
+        alone = self.following == np.arange(len(self.points))
+        turn, first = np.where(alone, 2 * np.pi, turn), np.where(alone, 0.0, first)
+        convex = turn > 1e-12
+        return Corners(self.points[convex], first[convex], turn[convex], self.parts[convex])

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from coord.model.arrays import Array
+from coord.model.arrays import Array, Point
 from coord.model.obstacle import Circle, Obstacle
 from coord.tolerances import DISTANCE
 
@@ -98,3 +98,129 @@ def too_near(obstacles: Sequence[Obstacle], points: Array, reach: Array) -> tupl
         return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), np.empty(0)
     who, what, signed = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return who, what, signed
+
+
+def placed(points: Array, rings: Sequence[Sequence[Point]]) -> Geometry:
+    """Convex shapes about (0, 0), each put at its point (n, 2) [m]; a ring of one vertex gives a point."""
+    shapes = [np.add(ring, point) for ring, point in zip(rings, points, strict=True)]
+    return np.array(
+        [shapely.Polygon(ring) if len(ring) > 2 else shapely.Point(ring[0]) for ring in shapes], dtype=object
+    )
+
+
+def separation(first: Geometry, second: Geometry) -> float:
+    """How far apart two convex shapes are [m]; negative: how far one would have to move for them to touch.
+
+    Overlapping convex polygons part soonest across one of their edges (the separating axis theorem).
+    """
+    distance = float(shapely.distance(first, second))
+    if distance > 0:
+        return distance
+    rings = [shapely.get_coordinates(shape) for shape in (first, second)]
+    deepest = -np.inf  # two points have no edge
+    for ring, other in (rings, rings[::-1]):
+        along = np.diff(ring, axis=0)
+        outwards = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+        beyond = ((other[None, :] - ring[:-1, None]) * outwards[:, None]).sum(axis=2).min(axis=1)
+        deepest = max(deepest, float(beyond.max(initial=-np.inf)))
+    return min(deepest, 0.0) if np.isfinite(deepest) else 0.0
+
+
+def nearer(first: Geometry, second: Geometry, need: Array) -> npt.NDArray[np.bool_]:
+    """Which pairs of convex shapes (n,) are nearer to each other than they need to be (n,) [m]; touching is not."""
+    gaps = np.asarray(shapely.distance(first, second), dtype=np.float64)
+    for n in np.flatnonzero((gaps == 0) & (need <= DISTANCE)).tolist():
+        gaps[n] = separation(first[n], second[n])
+    return np.asarray(gaps < need - DISTANCE)
+
+
+def meeting(shape: Geometry, ring: Sequence[Point]) -> Geometry:
+    """Where the reference point of a convex footprint (n, 2) [m] is when it meets a shape: shape (+) (-footprint).
+
+    Exact for concave shapes and holes too: the shape itself, united with the sum of each of its edges.
+    """
+    back = -np.asarray(ring, dtype=np.float64)
+    if len(back) == 1:
+        return shape  # of a footprint that counts as a disc, only the reference point
+    corners = shapely.get_coordinates(shape)
+    if len(corners) == 1:
+        return shapely.convex_hull(shapely.MultiPoint(corners[0] + back))
+    rings = [shapely.get_coordinates(line) for line in shapely.get_parts(shapely.boundary(shape))]
+    ends = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in rings])
+    swept = (ends[:, :, None] + back).reshape(len(ends), -1, 2)
+    return shapely.union_all([shape, *shapely.convex_hull(shapely.linestrings(swept))])
+
+
+def polygons_too_near(
+    obstacles: Sequence[Obstacle], points: Array, rings: Sequence[Sequence[Point]], clearance: float
+) -> tuple[Indices, Indices, Array]:
+    """All pairs of a convex footprint that keeps its heading and an obstacle nearer to it than the clearance [m].
+
+    Parameters
+    ----------
+    points : (n, 2) array [m] of reference points; rings : n footprints about them.
+
+    Returns
+    -------
+    As ``too_near``: indices of footprints and obstacles, and signed distances [m] between them; negative: how
+    far the footprint would have to move to be outside.
+    """
+    shapes = placed(points, rings)
+    tree = shapely.STRtree(shapes)
+    found: list[tuple[Indices, Indices, Array]] = []
+    for k, obstacle in enumerate(obstacles):
+        shape, radius = core(obstacle)
+        xmin, ymin, xmax, ymax = shapely.bounds(shape)
+        margin = clearance + radius
+        near = np.sort(tree.query(shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)))
+        if not len(near):
+            continue
+        shapely.prepare(shape)
+        near = near[shapely.dwithin(shape, shapes[near], margin)]
+        signed = np.asarray(shapely.distance(shape, shapes[near]), dtype=np.float64)
+        met: dict[tuple[Point, ...], Geometry] = {}
+        for n in np.flatnonzero(signed == 0).tolist():
+            ring = tuple(rings[near[n]])
+            if ring not in met:
+                met[ring] = meeting(shape, ring)
+            signed[n] = -float(depths(met[ring], points[near[n : n + 1]])[0])
+        signed -= radius
+        hit = signed < clearance - DISTANCE
+        found.append((near[hit], np.full(int(hit.sum()), k, dtype=np.intp), signed[hit]))
+    if not found:
+        return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), np.empty(0)
+    who, what, signed = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return who, what, signed
+
+
+def grown_outlines(obstacles: Sequence[Obstacle], ring: Sequence[Point], reach: float) -> list[Array]:
+    """Where a footprint's reference point comes as near to obstacles as it may: rings (n, 2) [m], to look at only.
+
+    Parameters
+    ----------
+    ring : the footprint's core, a convex polygon or a point. reach : distance [m] of the core from obstacles.
+
+    Arcs are drawn as chords, which cut up to a thousandth of the radius off.
+    """
+    grown = [
+        shapely.buffer(meeting(shape, ring), radius + reach, quad_segs=16) for shape, radius in map(core, obstacles)
+    ]
+    return _rings(shapely.union_all(grown))
+
+
+def hull_outlines(rings: Array) -> list[Array]:
+    """The floor that a convex footprint covers from pose to pose: rings (k, 2) [m], to look at only.
+
+    Parameters
+    ----------
+    rings : (n, m, 2) array [m], the footprint at n poses that follow each other; between two it is taken to cover
+        their convex hull, which is exact where it does not turn.
+    """
+    pairs = np.concatenate([rings[:-1], rings[1:]], axis=1) if len(rings) > 1 else rings
+    return _rings(shapely.union_all(shapely.convex_hull(shapely.multipoints(pairs))))
+
+
+def _rings(shape: Geometry) -> list[Array]:
+    """All rings of a shape, outlines and holes in opposite senses, the first vertex not repeated."""
+    lines = shapely.get_rings(shapely.get_parts(shapely.normalize(shape)))
+    return [np.asarray(shapely.get_coordinates(line), dtype=np.float64)[:-1] for line in lines]

@@ -37,12 +37,12 @@ class Path:
         pieces = frozen(self.pieces, 3)
         object.__setattr__(self, "pieces", pieces)
         object.__setattr__(self, "breaks", frozen(np.concatenate([[0.0], np.cumsum(pieces[:, 0])])))
-        poses = [self.start]
-        for length, k0, k1 in pieces.tolist():
-            x, y, heading = poses[-1]
-            dx, dy, turn = _advance(np.array([length]), length, k0, k1, heading)
-            poses.append((x + float(dx[0]), y + float(dy[0]), heading + float(turn[0])))
-        object.__setattr__(self, "poses", frozen(poses, 3))
+        length, k0, k1 = pieces.T
+        x, y, heading = self.start
+        headings = heading + np.concatenate([[0.0], np.cumsum((k0 + k1) / 2 * length)])
+        dx, dy, _ = _advance(length, length, k0, k1, headings[:-1])
+        steps = np.concatenate([[[x, y]], np.stack([dx, dy], axis=1)])
+        object.__setattr__(self, "poses", frozen(np.column_stack([np.cumsum(steps, axis=0), headings]), 3))
 
     def __reduce__(self) -> tuple[type[Path], tuple[object, ...]]:
         return (Path, (self.start, self.pieces))
@@ -60,18 +60,13 @@ class Path:
     def pose(self, s: npt.ArrayLike) -> Array:
         """Poses (m, 3): x, y [m] and heading [rad] at the arc lengths s (m,) [m], held at the ends beyond them."""
         s = np.clip(np.atleast_1d(np.asarray(s, dtype=np.float64)), 0.0, self.length)
-        result = np.empty((len(s), 3))
-        index = self._piece(s)
-        for k in np.unique(index).tolist():
-            chosen = index == k
-            if not len(self.pieces):
-                result[chosen] = self.start
-                continue
-            x, y, heading = self.poses[k].tolist()
-            length, k0, k1 = self.pieces[k].tolist()
-            dx, dy, turn = _advance(s[chosen] - self.breaks[k], length, k0, k1, heading)
-            result[chosen] = np.stack([x + dx, y + dy, heading + turn], axis=1)
-        return result
+        if not len(self.pieces):
+            return np.tile(self.start, (len(s), 1))
+        k = self._piece(s)
+        x, y, heading = self.poses[k].T
+        length, k0, k1 = self.pieces[k].T
+        dx, dy, turn = _advance(s - self.breaks[k], length, k0, k1, heading)
+        return np.stack([x + dx, y + dy, heading + turn], axis=1)
 
     def point(self, s: npt.ArrayLike) -> Array:
         """Points (m, 2) [m] at the arc lengths s (m,) [m]."""
@@ -98,14 +93,17 @@ def straight(start: Point, goal: Point) -> Path:
     return Path(pose, frozen([(length, 0.0, 0.0)] if length > 0 else [], 3))
 
 
-def _advance(u: Array, length: float, k0: float, k1: float, heading: float) -> tuple[Array, Array, Array]:
-    """Displacement (dx, dy) and turn after the arc lengths u within one piece."""
-    if k0 == k1:  # a line or an arc, without dividing by the curvature: the chord and its direction
-        turn = k0 * u
-        chord = u * np.sinc(turn / (2 * np.pi))  # numpy's sinc(x) is sin(pi x)/(pi x)
-        return chord * np.cos(heading + turn / 2), chord * np.sin(heading + turn / 2), turn
+def _advance(u: Array, length: Array, k0: Array, k1: Array, heading: Array) -> tuple[Array, Array, Array]:
+    """Displacements (dx, dy) and turns after the arc lengths u (m,), each within a piece of its own."""
     rate = (k1 - k0) / length
-    v = u[:, None] * _NODES
-    angle = heading + (k0 + rate / 2 * v) * v
-    dx, dy = u * (np.cos(angle) * _WEIGHTS).sum(axis=1), u * (np.sin(angle) * _WEIGHTS).sum(axis=1)
-    return dx, dy, (k0 + rate / 2 * u) * u
+    turn = (k0 + rate / 2 * u) * u
+    # a line or an arc, without dividing by the curvature: the chord and its direction
+    chord = u * np.sinc(turn / (2 * np.pi))  # numpy's sinc(x) is sin(pi x)/(pi x)
+    dx, dy = chord * np.cos(heading + turn / 2), chord * np.sin(heading + turn / 2)
+    bent = np.flatnonzero(k0 != k1)
+    if len(bent):
+        v = u[bent, None] * _NODES
+        angle = heading[bent, None] + (k0[bent, None] + rate[bent, None] / 2 * v) * v
+        dx[bent] = u[bent] * (np.cos(angle) * _WEIGHTS).sum(axis=1)
+        dy[bent] = u[bent] * (np.sin(angle) * _WEIGHTS).sum(axis=1)
+    return dx, dy, turn

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from coord.errors import NoPlanError
 from coord.geometry.enclosure import enclosing
 from coord.geometry.growth import Grown, grow
+from coord.model.footprint import Footprint
 from coord.model.path import Path, straight
 from coord.model.problem import Problem
 from coord.model.result import Diagnosis
@@ -28,16 +29,18 @@ def shortest_paths(problem: Problem, done: Callable[[int], None], shape: str = "
     NoPlanError
         When robots have no way at all; all of them are named, with what encloses them.
     """
-    floors: dict[float, Grown] = {}
+    floors: dict[Footprint, Grown] = {}
     paths, missing = [], []
     for robot in problem.robots:
         reach = robot.footprint.radius + problem.workspace.clearance
-        if reach not in floors:
-            floors[reach] = grow(problem.obstacles, reach, problem.workspace.bounds)
+        if robot.footprint not in floors:
+            floors[robot.footprint] = grow(
+                problem.obstacles, robot.footprint, problem.workspace.clearance, problem.workspace.bounds
+            )
         if robot.start == robot.goal:
             paths.append(straight(robot.start, robot.goal))
         else:
-            floor = search_floor(floors[reach], robot.start, robot.goal)
+            floor = search_floor(floors[robot.footprint], robot.start, robot.goal)
             found = skeleton(floor, robot.start, robot.goal)
             if isinstance(found, NoWay):
                 missing.append(_no_way(problem, robot, reach))

@@ -15,16 +15,21 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coord.geometry.blocked import Floor, Screen
+from coord.geometry.blocked import Floor, blocked_angles
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import part_distances
 from coord.model.arrays import Array, Point
+from coord.paths.tangents import END, TURN, TangentGraph, Tangents, turn, turns
 from coord.tolerances import PLANNING_MARGIN
 
-_TURN = 2 * np.pi
+#: Steps from a part that is hit to the parts beside it, pieces of one wall, that take part from then on, too.
+_SIBLINGS = 4
 
-#: [rad] A tangent may leave a corner this far outside the directions it may have, by rounding.
-_CONE_SLACK = 1e-9
+#: Parts this near to a segment that hits something take part, too: a share of the size of what it hits.
+_BESIDE = 0.5
+
+#: Tangents from one place that are tested at once; the rest waits until the search comes to them.
+_BATCH = 8
 
 #: [m] A way is not shorter than another by less than this.
 _SAME_LENGTH = 1e-12
@@ -50,6 +55,16 @@ class Skeleton:
     turns: tuple[Turn, ...]
     length: float
 
+    @property
+    def places(self) -> tuple[Point, ...]:
+        """Start, centres of the turns, goal [m]."""
+        return (self.start, *(turn.center for turn in self.turns), self.goal)
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """Sides of the turns, 0 for start and goal."""
+        return (0, *(turn.side for turn in self.turns), 0)
+
 
 @dataclass(frozen=True, slots=True)
 class NoWay:
@@ -60,15 +75,15 @@ class NoWay:
 
 def skeleton(floor: Floor, start: Point, goal: Point) -> Skeleton | NoWay:
     """The shortest path of a disc's centre from start to goal, both of which must keep the floor's distances."""
-    active: set[int] = set()
+    graph = TangentGraph(floor, start, goal)
     while True:
-        found = _Search(floor, np.array(sorted(active), dtype=np.intp), start, goal).run()
+        found = _Search(graph).run()
         if found is None:
-            return NoWay(tuple(sorted(active)))
-        hits = _hits(floor, found) - active
-        if not hits:
+            return NoWay(tuple(sorted(graph.active.tolist())))
+        hits = _newly_hit(floor, found, graph.active)
+        if not len(hits):
             return found
-        active |= hits
+        graph.activate(np.setdiff1d(_with_those_beside(floor, hits, found), graph.active))
 
 
 def search_floor(grown: Grown, start: Point, goal: Point) -> Floor:
@@ -80,182 +95,148 @@ def search_floor(grown: Grown, start: Point, goal: Point) -> Floor:
     return Floor(grown, np.minimum(grown.rho + PLANNING_MARGIN, nearest))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Tangents:
-    """Tangents from one disc: corners they lead to (-1: the goal), directions at both ends, end points (n, 2)."""
+@dataclass(slots=True, eq=False)
+class _State:
+    """A node with the direction in which it is reached, and the tangents that lead on from it.
 
-    corners: npt.NDArray[np.intp]
-    leaving: Array
-    arriving: Array
-    starts: Array
-    ends: Array
+    ``before`` : the state it is reached from, by number, -1 at the start, and ``left`` : in which direction that is
+    left. ``order`` : the tangents that the turn allows, the most promising first; ``estimate`` and ``reached`` :
+    for each of them the least length to the goal through it, and the length up to its end; ``queued`` : how many
+    of them were tested.
+    """
 
-    def only(self, chosen: npt.NDArray[np.bool_]) -> _Tangents:
-        return _Tangents(*(getattr(self, name)[chosen] for name in self.__slots__))
+    before: int
+    left: float
+    node: int
+    arriving: float
+    tangents: Tangents
+    order: npt.NDArray[np.intp]
+    estimate: Array
+    reached: Array
+    queued: int = 0
 
 
 class _Search:
-    """A* over tangents: a node is a corner with a side and the direction at which a tangent arrives."""
+    """A* over tangents."""
 
-    def __init__(self, floor: Floor, active: npt.NDArray[np.intp], start: Point, goal: Point) -> None:
-        self.floor = floor
-        corners = floor.grown.corners
-        self.is_active = np.zeros(len(floor.rho), dtype=np.bool_)
-        self.is_active[active] = True
-        chosen = np.flatnonzero(self.is_active[corners.parts])
-        self.places = np.repeat(corners.places[chosen], 2, axis=0)
-        self.radius = np.repeat(floor.rho[corners.parts[chosen]], 2)
-        self.side = np.tile([1.0, -1.0], len(chosen))
-        self.first, self.span = np.repeat(corners.first[chosen], 2), np.repeat(corners.span[chosen], 2)
-        self.start, self.goal = np.array(start), np.array(goal)
-        # where tangents may lead to: all corners, and last the goal, a disc of radius 0
-        self.to_places = np.vstack([self.places, self.goal])
-        self.to_radius, self.to_sides = np.append(self.radius, 0.0), np.append(self.side, 1.0)
-        self.to_first, self.to_span = np.append(self.first, 0.0), np.append(self.span, _TURN)
-        self.screen = Screen(floor, active)
-        self.blocked: dict[int, Array] = {}
+    def __init__(self, graph: TangentGraph) -> None:
+        self.graph = graph
+        self.states: list[_State] = []
         self.expanded: dict[int, list[tuple[float, float]]] = {}
-        # length + distance left, number, length, previous node, direction in which it is left, corner, arrival
-        self.heap: list[tuple[float, int, float, int, float, int, float]] = []
+        # least length to the goal, number, state, place in its order; -1: the rest of its tangents is to be tested
+        self.heap: list[tuple[float, int, int, int]] = []
         self.pushed = 0
-        self.trail: list[tuple[int, float, int, float]] = []  # previous node, direction there, corner, arrival
 
     def run(self) -> Skeleton | None:
         """The shortest path among the active parts, or None."""
-        self._push(-1, 0.0, self._tangents(self.start, 0.0, 1.0))
+        self._expand(-1, 0.0, END, 0.0, 0.0)
         while self.heap:
-            _, _, length, previous, leaving, corner, arriving = heapq.heappop(self.heap)
-            if corner < 0:
-                return self._result(previous, leaving, length)
-            if self._is_dominated(corner, arriving, length):
+            _, _, number, place = heapq.heappop(self.heap)
+            if place < 0:
+                self._queue(number)
                 continue
-            self.expanded.setdefault(corner, []).append((arriving, length))
-            self.trail.append((previous, leaving, corner, arriving))
-            radius, side = float(self.radius[corner]), float(self.side[corner])
-            tangents = self._tangents(self.places[corner], radius, side, corner)
-            turn = _turns(side, arriving, tangents.leaving)
-            fits = turn <= self._free_turn(corner, arriving)
-            self._push(len(self.trail) - 1, length + radius * turn[fits], tangents.only(fits))
+            state = self.states[number]
+            tangent, length = int(state.order[place]), float(state.reached[place])
+            leaving, arriving = float(state.tangents.leaving[tangent]), float(state.tangents.arriving[tangent])
+            node = int(state.tangents.nodes[tangent])
+            if node == END:
+                return self._result(number, leaving, length)
+            if not self._is_dominated(node, arriving, length):
+                self.expanded.setdefault(node, []).append((arriving, length))
+                self._expand(number, leaving, node, arriving, length)
         return None
 
-    def _push(self, previous: int, length: Array | float, tangents: _Tangents) -> None:
-        """Queue the tangents that hit nothing, by the length up to their end and the distance left."""
-        segments = np.hstack([tangents.starts, tangents.ends])
-        free = ~self.screen.is_hit(segments)
-        along = np.hypot(*(tangents.ends - tangents.starts).T)
-        rest = np.hypot(*(self.goal - tangents.ends).T)
-        total = length + along
-        rows = zip(
-            (total + rest)[free].tolist(),
-            total[free].tolist(),
-            tangents.leaving[free].tolist(),
-            tangents.corners[free].tolist(),
-            tangents.arriving[free].tolist(),
-            strict=True,
-        )
-        for estimate, reached, leaving, corner, arriving in rows:
-            self.pushed += 1
-            heapq.heappush(self.heap, (estimate, self.pushed, reached, previous, leaving, corner, arriving))
+    def _expand(self, before: int, left: float, node: int, arriving: float, length: float) -> None:
+        """Enter a new state: find where one can go on to, and how long the way would be at least."""
+        graph = self.graph
+        tangents = graph.tangents(node)
+        reached = length + tangents.lengths
+        chosen = np.arange(len(reached))
+        if node != END:
+            angle = turns(float(graph.side[node]), arriving, tangents.leaving)
+            reached += graph.radius[node] * angle
+            chosen = np.flatnonzero(angle <= graph.free_turn(node, arriving))
+        estimate = (reached + tangents.left)[chosen]
+        by_estimate = np.argsort(estimate, kind="stable")
+        order = chosen[by_estimate]
+        self.states.append(_State(before, left, node, arriving, tangents, order, estimate[by_estimate], reached[order]))
+        self._queue(len(self.states) - 1)
 
-    def _tangents(self, center: Array, radius: float, side: float, own: int = -1) -> _Tangents:
-        """Tangents from a directed disc (own: its corner; -1: the start) to all others and to the goal."""
-        D = self.to_places - center
-        far = np.hypot(D[:, 0], D[:, 1])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            a = (side * radius - self.to_sides * self.to_radius) / far
-        index = np.flatnonzero((far > 0) & (np.abs(a) <= 1.0 + 1e-12))
-        a, D, far, sides = np.clip(a[index], -1.0, 1.0), D[index], far[index], self.to_sides[index]
-        n = (a[:, None] * D - np.sqrt(1 - a * a)[:, None] * np.stack([-D[:, 1], D[:, 0]], axis=1)) / far[:, None]
-        leaving = np.arctan2(side * n[:, 1], side * n[:, 0])
-        arriving = np.arctan2(sides * n[:, 1], sides * n[:, 0])
-        fits = _in_cone(arriving, self.to_first[index], self.to_span[index])
-        if own >= 0:
-            fits &= _in_cone(leaving, self.first[own], self.span[own])
-        ends = self.to_places[index] + (sides * self.to_radius[index])[:, None] * n
-        xmin, ymin, xmax, ymax = self.floor.grown.box
-        x, y = ends.T
-        fits &= (x >= xmin - 1e-9) & (x <= xmax + 1e-9) & (y >= ymin - 1e-9) & (y <= ymax + 1e-9)
-        corners = np.where(index == len(self.places), -1, index)
-        return _Tangents(corners, leaving, arriving, center + (side * radius) * n, ends).only(fits)
+    def _queue(self, number: int) -> None:
+        """Test some more of a state's tangents, queue those that hit nothing, and remember that there are more."""
+        state = self.states[number]
+        first, last = state.queued, min(state.queued + _BATCH, len(state.order))
+        state.queued = last
+        free = self.graph.are_free(state.tangents, state.order[first:last])
+        for place in (first + np.flatnonzero(free)).tolist():
+            self._push(number, place, float(state.estimate[place]))
+        if last < len(state.order):
+            self._push(number, -1, float(state.estimate[last]))
 
-    def _is_dominated(self, corner: int, arriving: float, length: float) -> bool:
+    def _push(self, number: int, place: int, estimate: float) -> None:
+        self.pushed += 1
+        heapq.heappush(self.heap, (estimate, self.pushed, number, place))
+
+    def _is_dominated(self, node: int, arriving: float, length: float) -> bool:
         """Whether somebody was here earlier along the turn, at no greater length, with the arc in between free."""
-        radius, side = float(self.radius[corner]), float(self.side[corner])
-        for earlier, shorter in self.expanded.get(corner, ()):
-            turn = _turn(side, earlier, arriving)
-            if shorter + radius * turn <= length + _SAME_LENGTH and turn <= self._free_turn(corner, earlier):
+        radius, side = float(self.graph.radius[node]), float(self.graph.side[node])
+        for earlier, shorter in self.expanded.get(node, ()):
+            angle = turn(side, earlier, arriving)
+            if shorter + radius * angle <= length + _SAME_LENGTH and angle <= self.graph.free_turn(node, earlier):
                 return True
         return False
 
-    def _free_turn(self, corner: int, arriving: float) -> float:
-        """How far [rad] one can turn round a corner from a direction on until something is in the way."""
-        single = corner // 2  # both sides share a circle
-        if single not in self.blocked:
-            center, radius = self.places[corner], float(self.radius[corner])
-            self.blocked[single] = self.floor.blocked_angles(center, radius, self.is_active)
-        side = float(self.side[corner])
-        free = _TURN - 1e-9
-        for first, last in self.blocked[single].tolist():
-            entry = first if side > 0 else last
-            ahead = _turn(side, arriving, entry)
-            inside = (arriving - first) % _TURN
-            if 1e-7 < inside < last - first - 1e-7:
-                return 0.0
-            free = min(free, ahead + 1e-9)
-        return free
-
-    def _result(self, previous: int, leaving: float, length: float) -> Skeleton:
-        turns = []
-        while previous >= 0:
-            before, left, corner, arriving = self.trail[previous]
-            side = float(self.side[corner])
-            center = (float(self.places[corner, 0]), float(self.places[corner, 1]))
-            angle = _turn(side, arriving, leaving)
+    def _result(self, number: int, leaving: float, length: float) -> Skeleton:
+        found, graph = [], self.graph
+        while (state := self.states[number]).node != END:
+            side = float(graph.side[state.node])
+            angle = turn(side, state.arriving, leaving)
             if angle > 1e-12:
-                turns.append(Turn(center, float(self.radius[corner]), int(side), arriving, angle))
-            previous, leaving = before, left
-        start, goal = (float(self.start[0]), float(self.start[1])), (float(self.goal[0]), float(self.goal[1]))
-        return Skeleton(start, goal, tuple(turns[::-1]), length)
+                x, y = graph.places[state.node].tolist()
+                found.append(Turn((x, y), float(graph.radius[state.node]), int(side), state.arriving, angle))
+            number, leaving = state.before, state.left
+        start, goal = (float(graph.start[0]), float(graph.start[1])), (float(graph.goal[0]), float(graph.goal[1]))
+        return Skeleton(start, goal, tuple(found[::-1]), length)
 
 
-def _turn(side: float, first: float, last: float) -> float:
-    """The angle in [0, 2 pi) from one direction to another, turning to a side; a hair short of a full turn is none."""
-    angle = (side * (last - first)) % _TURN
-    return 0.0 if angle > _TURN - 1e-9 else angle
+def _segments(found: Skeleton) -> Array:
+    """The tangents (n, 4) [m] of a skeleton."""
+    points = [found.start]
+    for arc in found.turns:
+        for angle in (arc.first, arc.first + arc.side * arc.angle):
+            points.append((arc.center[0] + arc.radius * math.cos(angle), arc.center[1] + arc.radius * math.sin(angle)))
+    points.append(found.goal)
+    return np.array(points).reshape(-1, 4)
 
 
-def _turns(side: float, first: float, last: Array) -> Array:
-    """``_turn`` for many directions."""
-    angle = (side * (last - first)) % _TURN
-    return np.asarray(np.where(angle > _TURN - 1e-9, 0.0, angle))
+def _newly_hit(floor: Floor, found: Skeleton, active: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Parts that have no part in the search yet and that a skeleton comes too near to."""
+    hits = floor.hit_parts(_segments(found))[:, 1]
+    for arc in found.turns:
+        center = np.array(arc.center)
+        near = floor.near_parts((*(center - arc.radius).tolist(), *(center + arc.radius).tolist()))
+        near = np.setdiff1d(near, active)
+        if len(near) and _is_cut(floor, arc, near):
+            hits = np.concatenate([hits, near])
+    return np.setdiff1d(hits, active)
 
 
-def _in_cone(angle: Array, first: Array, span: Array) -> npt.NDArray[np.bool_]:
-    return np.asarray((angle - first + _CONE_SLACK) % _TURN <= span + 2 * _CONE_SLACK)
+def _with_those_beside(floor: Floor, hits: npt.NDArray[np.intp], found: Skeleton) -> npt.NDArray[np.intp]:
+    """Parts that are hit and those beside them, which the next skeleton might hit: it saves rounds."""
+    segments = _segments(found)
+    segments = segments[np.unique(floor.hit_parts(segments)[:, 0])]
+    beside = floor.parts_within(_BESIDE * float(np.median(floor.sizes(hits))), segments)
+    return floor.grown.near_siblings(np.union1d(hits, beside), _SIBLINGS)
 
 
-def _hits(floor: Floor, found: Skeleton) -> set[int]:
-    """Parts that a skeleton comes too near to."""
-    points = [np.array(found.start)]
-    for turn in found.turns:
-        for angle in (turn.first, turn.first + turn.side * turn.angle):
-            points.append(np.array(turn.center) + turn.radius * np.array([math.cos(angle), math.sin(angle)]))
-    points.append(np.array(found.goal))
-    segments = np.array([[*points[k], *points[k + 1]] for k in range(0, len(points), 2)])
-    hits = set(floor.hit_parts(segments)[:, 1].tolist())
-    for turn in found.turns:
-        center = np.array(turn.center)
-        near = floor.near_parts((*(center - turn.radius).tolist(), *(center + turn.radius).tolist()))
-        for part in near.tolist():
-            only = np.arange(len(floor.rho)) == part
-            stretches = floor.blocked_angles(center, turn.radius, only)
-            if part not in hits and any(_overlap(turn, first, last) for first, last in stretches.tolist()):
-                hits.add(part)
-    return hits
+def _is_cut(floor: Floor, arc: Turn, parts: npt.NDArray[np.intp]) -> bool:
+    """Whether an arc comes too near to some parts."""
+    stretches = blocked_angles(np.array(arc.center), arc.radius, *floor.edges_of(parts), floor.grown.box)
+    return any(_overlap(arc, first, last) for first, last in stretches.tolist())
 
 
-def _overlap(turn: Turn, first: float, last: float) -> bool:
+def _overlap(arc: Turn, first: float, last: float) -> bool:
     """Whether an arc runs through a stretch of angles by more than rounding."""
-    begin = turn.first if turn.side > 0 else turn.first - turn.angle
-    ahead, length = (first - begin) % _TURN, last - first
-    return ahead < turn.angle - 1e-7 or (ahead > _TURN - length + 1e-7 and turn.angle > 1e-7)
+    begin = arc.first if arc.side > 0 else arc.first - arc.angle
+    ahead, length = (first - begin) % TURN, last - first
+    return ahead < arc.angle - 1e-7 or (ahead > TURN - length + 1e-7 and arc.angle > 1e-7)

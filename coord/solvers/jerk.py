@@ -57,8 +57,10 @@ class LinkTimes:
     Calling ``motion`` for that would spend most of its time on profiles that nobody looks at.
     """
 
-    def __init__(self, limits: Limits) -> None:
-        """Prepare one request, of which only the states and the cap change."""
+    def __init__(self, limits: Limits, *, remember: bool = False) -> None:
+        """Prepare one request, of which only the states and the cap change; answers can be kept for the next time."""
+        self._known: dict[tuple[tuple[float, float], tuple[float, float], float, float], float] | None
+        self._known = {} if remember else None
         self._request = _request((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), limits, None)
         _set_limits(self._request, limits, 1.0)
         self._solver, self._trajectory = ruckig.Ruckig(1), ruckig.Trajectory(1)
@@ -68,6 +70,14 @@ class LinkTimes:
 
         Infinite where no such motion is found.
         """
+        if self._known is None:
+            return self._duration(start, goal, length, cap)
+        question = (start, goal, length, cap)
+        if question not in self._known:
+            self._known[question] = self._duration(*question)
+        return self._known[question]
+
+    def _duration(self, start: tuple[float, float], goal: tuple[float, float], length: float, cap: float) -> float:
         request = self._request
         request.max_velocity = [cap]
         request.current_velocity, request.current_acceleration = [start[0]], [start[1]]

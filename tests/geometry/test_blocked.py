@@ -8,8 +8,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coord.geometry.blocked import Floor
+from coord.geometry.blocked import Floor, blocked_angles
 from coord.geometry.growth import grow
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 
 BOUNDS = (0.0, 0.0, 12.0, 12.0)
@@ -24,7 +25,7 @@ places = st.tuples(st.floats(0.5, 11.5), st.floats(0.5, 11.5))
 
 @pytest.fixture(scope="module")
 def floor():
-    grown = grow(OBSTACLES, REACH, BOUNDS)
+    grown = grow(OBSTACLES, Footprint(REACH), 0.0, BOUNDS)
     return Floor(grown, grown.rho)
 
 
@@ -58,7 +59,7 @@ def test_blocked_angles_are_those_at_which_the_circle_is_too_near(floor, center,
 
     Deep inside a part nothing need be blocked: nobody gets there without crossing its outline.
     """
-    stretches = floor.blocked_angles(np.array(center), radius, np.ones(len(floor.rho), dtype=bool))
+    stretches = blocked_angles(np.array(center), radius, *floor.edges_of(np.arange(len(floor.rho))), floor.grown.box)
     angles = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
     at = np.array(center) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     xmin, ymin, xmax, ymax = floor.grown.box
@@ -87,10 +88,10 @@ def test_a_circle_round_its_own_corner_is_blocked_where_the_edges_begin():
     rng = np.random.default_rng(2)
     for _ in range(500):
         reach, angle = rng.uniform(0.1, 0.5), rng.uniform(0, 2 * np.pi)
-        grown = grow([rectangle("s", (4.0, 4.0, 8.0, 8.0), angle)], reach, BOUNDS)
+        grown = grow([rectangle("s", (4.0, 4.0, 8.0, 8.0), angle)], Footprint(reach), 0.0, BOUNDS)
         floor = Floor(grown, grown.rho)
         for place, first, span in zip(grown.corners.places, grown.corners.first, grown.corners.span, strict=True):
-            stretches = floor.blocked_angles(place, reach, np.arange(len(floor.rho)) == 0)
+            stretches = blocked_angles(place, reach, *floor.edges_of(np.array([0])), floor.grown.box)
             for share, is_free in (
                 (1e-5, True),
                 (0.5, True),
@@ -107,6 +108,6 @@ def test_near_parts_are_those_whose_grown_boxes_meet_a_box(floor):
     """In ascending order, and none on an empty floor."""
     assert floor.near_parts((0.0, 0.0, 12.0, 12.0)).tolist() == [0, 1, 2]
     assert len(floor.near_parts((11.0, 11.0, 12.0, 12.0))) == 0
-    empty = grow([], REACH, BOUNDS)
+    empty = grow([], Footprint(REACH), 0.0, BOUNDS)
     assert len(Floor(empty, empty.rho).near_parts((0.0, 0.0, 1.0, 1.0))) == 0
     assert len(Floor(empty, empty.rho).hit_parts(np.array([[0.0, 0.0, 1.0, 1.0]]))) == 0

@@ -11,6 +11,7 @@ import shapely
 from coord.geometry.blocked import Floor
 from coord.geometry.clearance import keeps_distance
 from coord.geometry.growth import grow
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 from coord.model.path import Path
 
@@ -24,7 +25,7 @@ OBSTACLES = [
 
 @pytest.fixture(scope="module")
 def floor():
-    grown = grow(OBSTACLES, 0.4, BOUNDS)
+    grown = grow(OBSTACLES, Footprint(0.4), 0.0, BOUNDS)
     return Floor(grown, grown.rho)
 
 

@@ -10,6 +10,7 @@ import pytest
 import shapely
 
 from coord.geometry.growth import grow
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 from coord.paths.skeleton import NoWay, search_floor, skeleton
 from coord.paths.taut import taut
@@ -99,8 +100,9 @@ def route():
     """(obstacles, bounds, reach, start, goal) -> skeleton and path, or None where there is no way."""
 
     def find(obstacles, bounds, reach, start, goal):
-        found = skeleton(search_floor(grow(obstacles, reach, bounds), start, goal), start, goal)
-        return None if isinstance(found, NoWay) else (found, taut(found))
+        floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), start, goal)
+        found = skeleton(floor, start, goal)
+        return None if isinstance(found, NoWay) else (found, taut(found, floor))
 
     return find
 

@@ -7,6 +7,7 @@ import pytest
 
 from coord.alone.fastest import fastest, solo_bound
 from coord.geometry.growth import grow
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, rectangle
 from coord.model.robot import Limits
 from coord.paths.fitted import fitted
@@ -19,9 +20,9 @@ LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
 def both(obstacles, bounds, reach, start, goal, limits=LIMITS):
     """Skeleton, fitted and taut path; None where there is no way."""
-    floor = search_floor(grow(obstacles, reach, bounds), start, goal)
+    floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), start, goal)
     found = skeleton(floor, start, goal)
-    return None if isinstance(found, NoWay) else (found, fitted(found, limits, floor), taut(found))
+    return None if isinstance(found, NoWay) else (found, fitted(found, limits, floor), taut(found, floor))
 
 
 @pytest.mark.parametrize("seed", range(300, 330))
