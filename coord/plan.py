@@ -17,7 +17,7 @@ from coord.model.options import Options
 from coord.model.problem import Problem
 from coord.model.result import Clearance, Diagnosis, Plan, Result, RobotPlan
 from coord.output.plan_file import serialise
-from coord.paths.shortest import shortest_paths
+from coord.paths.routes import find_routes
 from coord.timing.ego import ego
 from coord.verify import Report, verify
 
@@ -68,10 +68,11 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
     """The stages in order: paths, alone, conflicts, order, timing."""
     robots, clearance = problem.robots, problem.workspace.clearance
     names = [robot.name for robot in robots]
-    paths = shortest_paths(problem, lambda done: progress("paths", done, len(robots)), options.shape)
+    routes = find_routes(problem, options.shape, lambda done: progress("paths", done, len(robots)))
+    paths = [route.path for route in routes]
     egos = []
-    for robot, path in zip(robots, paths, strict=True):
-        egos.append(ego(robot, path))
+    for robot, route in zip(robots, routes, strict=True):
+        egos.append(ego(robot, route.path, route.alone))
         progress("alone", len(egos), len(robots))
 
     chains = [chords(path) for path in paths]

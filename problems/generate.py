@@ -1,4 +1,4 @@
-"""Write the seeded problems: ``crossing/`` and ``warehouse/``.
+"""Write the problems that are made by rule or from a seed: ``crossing/``, ``warehouse/`` and ``squares_*.toml``.
 
 ``python problems/generate.py`` writes the files, always with the same content; ``--check`` only says whether they
 are up to date, and exits with 1 if not. Change a family here, never in its files.
@@ -20,7 +20,7 @@ from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import chords
 from coord.coordination.blocking import blocking_arcs
 from coord.coordination.order import topological_order
-from coord.paths.shortest import shortest_paths
+from coord.paths.routes import find_routes
 
 Point = tuple[float, float]
 Line = tuple[Point, Point]
@@ -40,6 +40,11 @@ WAREHOUSE_RADIUS: Final = 0.35
 WAREHOUSE_LIMITS: Final = Limits(1.5, 0.8, 0.8, 2.0, 0.8)
 SHELF: Final = (6.0, 2.0)
 AISLE: Final = 2.5
+#: Side of the robots that keep their heading, left edge, width and gap of racks, lower edge, depth and gap of rows [m].
+SQUARE: Final = 0.8
+RACKS: Final = (2.0, 4.5, 1.1)
+ROWS: Final = (1.6, 2.8, 2.4)
+
 #: [m] Distance of starts and goals from shelves and edge, and shortest trip.
 STAND_OFF: Final = 0.75
 SHORTEST_TRIP: Final = 8.0
@@ -47,7 +52,7 @@ SHORTEST_TRIP: Final = 8.0
 
 def main() -> int:
     """Write or check all files; the exit code."""
-    parser = argparse.ArgumentParser(description="Write the seeded problems.")
+    parser = argparse.ArgumentParser(description="Write the problems that are made, not drawn by hand.")
     parser.add_argument("--check", action="store_true", help="write nothing, say which files are not up to date")
     check = parser.parse_args().check
     stale = []
@@ -65,10 +70,10 @@ def main() -> int:
 
 
 def problems() -> dict[str, str]:
-    """All seeded problem files, by name."""
+    """All problem files that are made here, by name."""
     texts = {f"crossing/crossing_{n:02}.toml": crossing(n, side, seed) for n, side, seed in CROSSINGS}
     texts |= {f"warehouse/warehouse_{n:02}.toml": warehouse(n, *rest) for n, *rest in WAREHOUSES}
-    return texts
+    return texts | {"squares_fixed.toml": squares_fixed(), "squares_turning.toml": squares_turning()}
 
 
 def crossing(count: int, side: float, seed: int) -> str:
@@ -86,7 +91,7 @@ def crossing(count: int, side: float, seed: int) -> str:
         "# robot's start and goal, so any order works: only the speeds have to be found.",
         f"# Written by problems/generate.py (seed {seed}): change it there.",
         *_head(f"crossing {count:02}", (0.0, 0.0, side, side)),
-        *_defaults(CROSSING_RADIUS, CROSSING_LIMITS),
+        *_defaults(f"disc = {CROSSING_RADIUS}", CROSSING_LIMITS),
         *_robots("r", lines),
     )
 
@@ -136,12 +141,9 @@ def warehouse(count: int, columns: int, rows: int, seed: int) -> str:
         "# shortest paths there is an order in which everybody arrives.",
         f"# Written by problems/generate.py (seed {seed}): change it there.",
         *_head(f"warehouse {count:02}", bounds),
-        *_defaults(WAREHOUSE_RADIUS, WAREHOUSE_LIMITS),
+        *_defaults(f"disc = {WAREHOUSE_RADIUS}", WAREHOUSE_LIMITS),
         *_robots("amr-", trips),
-        *itertools.chain.from_iterable(
-            ("", "[[obstacles]]", f'name = "shelf {k + 1}"', f"rectangle = {list(shelf)}")
-            for k, shelf in enumerate(shelves)
-        ),
+        *_rectangles("shelf", shelves),
     )
 
 
@@ -163,7 +165,7 @@ def _acyclic_trips(rng: random.Random, count: int, shelves: Sequence[Box], bound
         ):
             continue
         robot = Robot(str(len(robots)), Footprint(WAREHOUSE_RADIUS), WAREHOUSE_LIMITS, start, goal)
-        path = shortest_paths(Problem("", floor, (robot,), obstacles), lambda done: None)[0]
+        path = find_routes(Problem("", floor, (robot,), obstacles))[0].path
         if _acyclic([*robots, robot], [*paths, path]):
             robots.append(robot)
             paths.append(path)
@@ -187,6 +189,79 @@ def _acyclic(robots: Sequence[Robot], paths: Sequence[Path]) -> bool:
     return topological_order(range(len(robots)), [robot.name for robot in robots], arcs) is not None
 
 
+def squares_fixed() -> str:
+    """Squares that never turn, between racks: aisles that they fit through and discs round them would not."""
+    (left, width, aisle), (lower, depth, lane) = RACKS, ROWS
+    columns = [round(left + k * (width + aisle), 9) for k in range(3)]
+    rows = [round(lower + k * (depth + lane), 9) for k in range(2)]
+    racks = [(x, y, round(x + width, 9), round(y + depth, 9)) for y in rows for x in columns]
+    right, top = round(columns[2] + width + left, 9), round(rows[1] + depth + lower, 9)
+    between = [round(x - aisle / 2, 9) for x in columns[1:]]
+    disc = math.sqrt(2) * SQUARE
+    middle, low, high, far = round(lower + depth + lane / 2, 9), 0.8, round(top - 0.8, 9), round(right - 1.0, 9)
+    trips = [
+        ((between[0], low), (between[0], high)),
+        ((between[1], high), (between[1], low)),
+        ((1.0, round(middle + 0.5, 9)), (far, round(middle + 0.5, 9))),
+        ((far, round(middle - 0.5, 9)), (1.0, round(middle - 0.5, 9))),
+        ((1.0, low), (16.0, high)),
+        ((far, low), (4.0, high)),
+    ]
+    return _text(
+        f"# {len(trips)} square robots that never turn, {SQUARE:g} m wide, cross a hall with racks. Through the aisles",
+        f"# of {aisle:g} m between the racks they fit with their clearance. Discs round them ({disc:.2f} m) would not,",
+        "# nor could two such discs pass each other on the lane in the middle, as sq-3 and sq-4 do.",
+        "# Written by problems/generate.py: change it there.",
+        *_head("squares, fixed", (0.0, 0.0, right, top)),
+        *_defaults(f"square = {SQUARE}", WAREHOUSE_LIMITS),
+        'heading = "fixed"                   # as drawn, all the time; for squares this is the default',
+        *_robots("sq-", trips),
+        *_rectangles("rack", racks),
+    )
+
+
+def squares_turning() -> str:
+    """Footprints that turn with the path: squares, and a truck much longer than wide, round bends."""
+    trips = [
+        ((2.0, 2.0), (17.0, 11.0)),
+        ((17.5, 2.0), (2.5, 11.0)),
+        ((9.5, 12.0), (9.5, 1.5)),
+        ((1.5, 6.5), (18.5, 6.5)),
+    ]
+    robots = _robots("sq-", trips)
+    truck = [
+        "",
+        "[[robots]]",
+        'name = "truck"                      # its reference point is its rear axle: it turns about that',
+        "footprint = { polygon = [[-0.3, -0.35], [1.2, -0.35], [1.4, 0.0], [1.2, 0.35], [-0.3, 0.35]] }",
+        "speed = 0.8",
+        "start = [2.0, 9.0]",
+        "goal = [17.0, 4.0]",
+    ]
+    return _text(
+        "# Robots that turn with their path: four squares, and a truck twice as long as wide. Planning keeps room for",
+        "# the disc round each of them, whichever way it heads; the checker then certifies the shapes as they turn.",
+        "# Written by problems/generate.py: change it there.",
+        *_head("squares, turning", (0.0, 0.0, 20.0, 13.0)),
+        *_defaults("square = 0.7", WAREHOUSE_LIMITS),
+        'heading = "path"                    # the drawn x axis points along the path; the default for polygons',
+        *robots,
+        *truck,
+        *_rectangles("block", [(5.0, 3.5, 7.5, 5.0), (12.0, 8.0, 14.5, 9.5)]),
+        "",
+        "[[obstacles]]",
+        'name = "column"',
+        "circle = { center = [9.6, 6.4], radius = 1.0 }",
+    )
+
+
+def _rectangles(name: str, boxes: Sequence[Box]) -> list[str]:
+    tables = (
+        ("", "[[obstacles]]", f'name = "{name} {k + 1}"', f"rectangle = {list(box)}") for k, box in enumerate(boxes)
+    )
+    return list(itertools.chain.from_iterable(tables))
+
+
 def _text(*lines: str) -> str:
     return "\n".join(lines) + "\n"
 
@@ -203,10 +278,10 @@ def _head(name: str, bounds: Box) -> list[str]:
     ]
 
 
-def _defaults(radius: float, limits: Limits) -> list[str]:
+def _defaults(footprint: str, limits: Limits) -> list[str]:
     fields = ("speed", "acceleration", "deceleration", "jerk", "lateral_acceleration")
     values = [f"{field} = {getattr(limits, field)}" for field in fields]
-    return ["", "[defaults]", f"footprint = {{ disc = {radius} }}", *values]
+    return ["", "[defaults]", f"footprint = {{ {footprint} }}", *values]
 
 
 def _robots(prefix: str, trips: Sequence[Line]) -> list[str]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from coord.conflicts.core import conflict_core
 from coord.conflicts.rest import runs_over
 from coord.model.path import Path
 from coord.model.result import BlockingArc
@@ -23,10 +24,11 @@ def blocking_arcs(
     arcs = []
     for i, k in pairs:
         for resting, driving in ((i, k), (k, i)):
-            distance = robots[resting].footprint.radius + robots[driving].footprint.radius + clearance
+            place, way = robots[resting].footprint, robots[driving].footprint
+            distance, core = place.margin + way.margin + clearance, conflict_core(way.core, place.core)
             first, then = robots[resting].name, robots[driving].name
-            if runs_over(paths[driving], robots[resting].start, distance) is not None:
+            if runs_over(paths[driving], robots[resting].start, distance, core) is not None:
                 arcs.append(BlockingArc(first, then, "start", robots[resting].start))
-            if runs_over(paths[driving], robots[resting].goal, distance) is not None:
+            if runs_over(paths[driving], robots[resting].goal, distance, core) is not None:
                 arcs.append(BlockingArc(then, first, "goal", robots[resting].goal))
     return arcs

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from coord.conflicts.chords import Chords
+from coord.conflicts.core import conflict_core
 from coord.conflicts.region import conflict_regions
 from coord.coordination import diagnose
 from coord.errors import NoPlanError
@@ -39,9 +40,14 @@ class Scene:
                 other_waits=(k, i, "start") in self.blocked,
                 other_parks=(k, i, "goal") in self.blocked,
             )
-            reach = self.egos[i].robot.footprint.radius + self.egos[k].robot.footprint.radius + self.clearance
+            ego, other = self.egos[i].robot.footprint, self.egos[k].robot.footprint
             regions = conflict_regions(
-                self.chords[i], self.chords[k], reach, start_free=ends.start_free, goal_free=ends.goal_free
+                self.chords[i],
+                self.chords[k],
+                ego.margin + other.margin + self.clearance,
+                conflict_core(ego.core, other.core),
+                start_free=ends.start_free,
+                goal_free=ends.goal_free,
             )
             found += [Meeting(region, k, timings[k].profile, ends, self.egos[i].length) for region in regions]
         return found

@@ -9,7 +9,7 @@ from coord.errors import InvalidValueError
 
 _CHOICES = {
     "method": ("velocity",),
-    "shape": ("fitted", "taut"),
+    "shape": ("fitted", "exponential", "taut", "follow"),
     "order": ("priority",),
     "profile": ("fastest",),
 }
@@ -17,7 +17,7 @@ _CHOICES = {
 #: Values that the contract names and later work brings.
 _LATER = {
     "method": ("stop", "nearest"),
-    "shape": ("exponential", "follow"),
+    "shape": (),
     "order": ("longest", "shortest", "heading", "random", "search"),
     "profile": ("gentle",),
 }
@@ -30,7 +30,8 @@ class Options:
     Parameters
     ----------
     method : "velocity": by priority, the later robot changes its velocity.
-    shape : "fitted": every turn as wide as pays in time; "taut": the shortest way of arcs and tangents.
+    shape : "fitted": every turn as wide as pays in time; "exponential": detours along least-squares exponentials;
+        "taut": the shortest way of arcs and tangents; "follow": along the edges of the obstacles.
     order : "priority": the user's priorities, else the longest alone first.
     profile : "fastest": each robot arrives as early as it can.
     time_limit : wall time [s] after which a run without a plan gives up; None for no limit.

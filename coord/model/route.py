@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from coord.model.path import Path
+from coord.model.profile import VelocityProfile
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,11 @@ class Way:
     time: float | None
     reason: str = ""
 
+    @property
+    def length(self) -> float | None:
+        """Length of the path [m]."""
+        return None if self.path is None else self.path.length
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Route:
@@ -50,7 +56,7 @@ class Route:
 
     Parameters
     ----------
-    path : the path chosen; ``time`` [s] alone, from rest to rest.
+    path : the path chosen; ``alone`` : the quickest profile found along it, from rest to rest, from t = 0.
     shape : of the turns: "fitted", "exponential", "taut", "follow"; "straight" where nothing is in the way;
         "given" for a path out of the problem file.
     side : "left", "right", "both" (left of some obstacles and right of others), "" where the line is free.
@@ -59,10 +65,15 @@ class Route:
     """
 
     path: Path
-    time: float
+    alone: VelocityProfile
     shape: str
     side: str
     least_length: float
     ways: tuple[Way, ...] = ()
     fits: tuple[Fit, ...] = ()
     remarks: tuple[str, ...] = ()
+
+    @property
+    def time(self) -> float:
+        """Time [s] alone, from rest to rest."""
+        return self.alone.arrival

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import heapq
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,11 +74,14 @@ class NoWay:
     parts: tuple[int, ...]
 
 
-def skeleton(floor: Floor, start: Point, goal: Point) -> Skeleton | NoWay:
-    """The shortest path of a disc's centre from start to goal, both of which must keep the floor's distances."""
+def skeleton(floor: Floor, start: Point, goal: Point, longest: float = math.inf) -> Skeleton | NoWay:
+    """The shortest path of a disc's centre from start to goal, both of which must keep the floor's distances.
+
+    ``longest`` : where every path is longer than this [m], there is no way.
+    """
     graph = TangentGraph(floor, start, goal)
     while True:
-        found = _Search(graph).run()
+        found = _Search(graph).run(longest)
         if found is None:
             return NoWay(tuple(sorted(graph.active.tolist())))
         hits = _newly_hit(floor, found, graph.active)
@@ -86,12 +90,12 @@ def skeleton(floor: Floor, start: Point, goal: Point) -> Skeleton | NoWay:
         graph.activate(np.setdiff1d(_with_those_beside(floor, hits, found), graph.active))
 
 
-def search_floor(grown: Grown, start: Point, goal: Point) -> Floor:
+def search_floor(grown: Grown, places: Sequence[Point]) -> Floor:
     """The floor as a search sees it: with a margin for the certificate.
 
-    The margin is never so large that the start or the goal would be too near to something.
+    The margin is never so large that one of the places that a path leads to would be too near to something.
     """
-    nearest = part_distances(grown.parts, np.array([start, goal]))
+    nearest = part_distances(grown.parts, np.array(places))
     return Floor(grown, np.minimum(grown.rho + PLANNING_MARGIN, nearest))
 
 
@@ -127,10 +131,10 @@ class _Search:
         self.heap: list[tuple[float, int, int, int]] = []
         self.pushed = 0
 
-    def run(self) -> Skeleton | None:
-        """The shortest path among the active parts, or None."""
+    def run(self, longest: float) -> Skeleton | None:
+        """The shortest path among the active parts; None where there is none, or only longer ones."""
         self._expand(-1, 0.0, END, 0.0, 0.0)
-        while self.heap:
+        while self.heap and self.heap[0][0] <= longest:
             _, _, number, place = heapq.heappop(self.heap)
             if place < 0:
                 self._queue(number)

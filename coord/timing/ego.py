@@ -38,10 +38,10 @@ class Ego:
         return self.path.length
 
 
-def ego(robot: Robot, path: Path) -> Ego:
-    """Work out what a robot can do alone on its path."""
+def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
+    """Work out what a robot can do alone on its path; ``alone``: its quickest profile from t = 0, if it is known."""
     limits = robot.limits
-    alone = fastest(path, limits).shifted(robot.release)
+    alone = (alone or fastest(path, limits)).shifted(robot.release)
     caps = speed_limit(path, limits)
     # no cap is reached anywhere on a path of bends only: the ramps may use the highest cap there is
     top = dataclasses.replace(limits, speed=max(caps.caps.tolist(), default=limits.speed))

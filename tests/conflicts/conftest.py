@@ -6,10 +6,13 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 
 from coord.conflicts.chords import chords
+from coord.conflicts.core import conflict_core
 from coord.conflicts.region import conflict_regions
 from coord.conflicts.rest import runs_over
+from coord.model.footprint import Footprint, polygon, square
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
@@ -107,3 +110,74 @@ def _forbidden(found, s, sigma):
 def forbidden():
     """(regions, s, sigma) -> table of what is forbidden."""
     return _forbidden
+
+
+def _regular(corners, radius, turn=0.0):
+    """A footprint with so many corners on a circle, the first at an angle, that keeps its heading."""
+    angles = turn + 2 * math.pi * np.arange(corners) / corners
+    return polygon((radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)).tolist(), "fixed")
+
+
+@pytest.fixture(scope="session")
+def regular():
+    """(corners, radius, turn) -> a regular polygon."""
+    return _regular
+
+
+def _wild_shape(rng):
+    """A disc, a square, a regular polygon turned at will or a lopsided triangle, of 0.1 to 0.7 m."""
+    kind = rng.integers(4)
+    if kind == 0:
+        return Footprint(rng.uniform(0.1, 0.6))
+    if kind == 1:
+        return square(rng.choice([0.3, 0.6, 1.1]))
+    if kind == 2:
+        return _regular(rng.integers(3, 8), rng.uniform(0.2, 0.7), rng.uniform(0, 7))
+    return polygon((rng.uniform(0.1, 0.7, (3, 1)) * [[-1.0, -0.3], [0.9, -0.2], [0.1, 1.0]]).tolist(), "fixed")
+
+
+@pytest.fixture(scope="session")
+def wild_shape():
+    """rng -> a footprint."""
+    return _wild_shape
+
+
+def _body(footprint):
+    """What the core of a footprint is to shapely."""
+    return shapely.MultiPoint(footprint.core).convex_hull
+
+
+def _gaps(ego, other, s, sigma, shapes):
+    """(len(s), len(sigma)) true distances between the bodies of two robots, 0 where they overlap."""
+    bodies = [
+        shapely.transform(np.repeat(_body(shape), len(at)), lambda xy, at=at: _moved(xy, at))
+        for shape, at in zip(shapes, (ego.point(s), other.point(sigma)), strict=True)
+    ]
+    gap = shapely.distance(bodies[0][:, None], bodies[1][None])
+    return np.maximum(gap - shapes[0].margin - shapes[1].margin, 0.0)
+
+
+def _moved(xy, at):
+    return xy + np.repeat(at, len(xy) // len(at), axis=0)
+
+
+@pytest.fixture(scope="session")
+def gaps():
+    """(ego, other, s, sigma, (ego's, other's footprint)) -> all true distances between their bodies."""
+    return _gaps
+
+
+def _shape_regions(ego, other, shapes, clearance):
+    """Regions of two footprints with the ends as the planner sets them."""
+    mine, theirs = shapes
+    reach = mine.margin + theirs.margin + clearance
+    seen = conflict_core(theirs.core, mine.core)
+    free = [runs_over(other, tuple(place), reach, seen) is None for place in (ego.poses[0, :2].tolist(), ego.end)]
+    core = conflict_core(mine.core, theirs.core)
+    return conflict_regions(chords(ego), chords(other), reach, core, start_free=free[0], goal_free=free[1])
+
+
+@pytest.fixture(scope="session")
+def shape_regions():
+    """(ego, other, (ego's, other's footprint), clearance) -> regions."""
+    return _shape_regions

@@ -8,18 +8,18 @@ import pytest
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import chords
 from coord.coordination.blocking import blocking_arcs
-from coord.model.footprint import Footprint
+from coord.model.footprint import Footprint, square
 from coord.model.path import straight
 from coord.model.robot import Limits, Robot
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
 
-def arcs(*ways, radius=0.3, clearance=0.05):
+def arcs(*ways, shape=Footprint(0.3), clearance=0.05):  # noqa: B008 - a frozen value
     """Arcs (first, then, at) between robots 0, 1, ... that drive straight."""
-    robots = [Robot(str(k), Footprint(radius), LIMITS, *way) for k, way in enumerate(ways)]
+    robots = [Robot(str(k), shape, LIMITS, *way) for k, way in enumerate(ways)]
     paths = [straight(*way) for way in ways]
-    pairs = candidate_pairs([chords(path) for path in paths], [radius + clearance / 2] * len(paths))
+    pairs = candidate_pairs([chords(path) for path in paths], [shape.radius + clearance / 2] * len(paths))
     return [(arc.first, arc.then, arc.at) for arc in blocking_arcs(robots, paths, pairs, clearance)]
 
 
@@ -82,3 +82,34 @@ def test_arcs_are_those_of_sampled_distances():
                         assert (arc in found) == (least < 0.65)
                         count += least < 0.65
     assert count > 100
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("clearance", [0.0, 0.05])
+def test_squares_that_touch_the_way_of_squares_do_not_block(side, clearance):
+    """A start or goal beside the way at a side and the clearance is free, 1 mm and even 2e-9 m nearer blocks."""
+    shape = square(0.6)
+    for gap, blocks in ((0.0, False), (2e-9, True), (1e-3, True)):
+        beside = (5.0, side * (0.6 + clearance - gap))
+        leaves, parks = (beside, (5.0, side * 9.0)), ((5.0, side * 9.0), beside)
+        assert arcs(WAY, leaves, shape=shape, clearance=clearance) == [("1", "0", "start")] * blocks
+        assert arcs(WAY, parks, shape=shape, clearance=clearance) == [("0", "1", "goal")] * blocks
+
+
+def test_a_square_that_turns_blocks_as_the_disc_round_it():
+    """Beside the way at a side and a bit it blocks; at the diagonal and the clearance it does not."""
+    shape = square(0.6, "path")
+    near, far = (5.0, 0.7), (5.0, 0.6 * 2**0.5 + 0.05 + 1e-12)
+    assert arcs(WAY, (near, (5.0, 9.0)), shape=shape) == [("1", "0", "start")]
+    assert arcs(WAY, (far, (5.0, 9.0)), shape=shape) == []
+
+
+def test_a_disc_and_a_square_keep_the_clearance_to_its_side_and_its_corner():
+    """Whichever of the two rests: 0.3 m of each, and where the way ends before the corner, the distance to it."""
+    limits, disc, box = LIMITS, Footprint(0.3), square(0.6)
+    for resting, driving in ((disc, box), (box, disc)):
+        for gap, blocks in ((0.0, False), (-4e-9, True)):
+            for place in ((5.0, 0.65 + gap), (10.3 + 0.6 * (0.35 + gap), 0.3 + 0.8 * (0.35 + gap))):
+                robots = [Robot("0", driving, limits, *WAY), Robot("1", resting, limits, place, (5.0, 9.0))]
+                found = blocking_arcs(robots, [straight(*WAY), straight(place, (5.0, 9.0))], [(0, 1)], 0.05)
+                assert (("1", "0", "start") in [(arc.first, arc.then, arc.at) for arc in found]) == blocks

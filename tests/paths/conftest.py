@@ -100,7 +100,7 @@ def route():
     """(obstacles, bounds, reach, start, goal) -> skeleton and path, or None where there is no way."""
 
     def find(obstacles, bounds, reach, start, goal):
-        floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), start, goal)
+        floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), (start, goal))
         found = skeleton(floor, start, goal)
         return None if isinstance(found, NoWay) else (found, taut(found, floor))
 

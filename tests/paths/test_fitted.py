@@ -20,7 +20,7 @@ LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
 def both(obstacles, bounds, reach, start, goal, limits=LIMITS):
     """Skeleton, fitted and taut path; None where there is no way."""
-    floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), start, goal)
+    floor = search_floor(grow(obstacles, Footprint(reach), 0.0, bounds), (start, goal))
     found = skeleton(floor, start, goal)
     return None if isinstance(found, NoWay) else (found, fitted(found, limits, floor), taut(found, floor))
 

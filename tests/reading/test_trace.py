@@ -132,3 +132,27 @@ def test_a_large_map_is_traced_in_moments():
     polygons = trace(occupied)
     assert time.perf_counter() - started < 3
     assert sum(area(shell) + sum(area(hole) for hole in holes) for shell, holes in polygons) == occupied.sum()
+
+
+def floor_plan(side: int, noise: float) -> np.ndarray:
+    """Rooms of 250 x 250 cells with a door in each wall and seven racks in each, and stray cells all over."""
+    rng = np.random.default_rng(1)
+    occupied = np.zeros((side, side), dtype=bool)
+    for k in range(0, side, 250):
+        occupied[k : k + 4] = occupied[:, k : k + 4] = True
+    for r, c in np.ndindex(side // 250, side // 250):
+        y, x, door = 250 * r, 250 * c, int(rng.integers(20, 200))
+        occupied[y : y + 4, x + door : x + door + 30] = occupied[y + door : y + door + 30, x : x + 4] = False
+        for rack in range(30, 220, 30):
+            occupied[y + rack : y + rack + 12, x + 40 : x + 200] = True
+    return occupied | (rng.random((side, side)) < noise)
+
+
+@pytest.mark.parametrize(("side", "noise", "seconds"), [(2000, 0.001, 1.0), (750, 0.5, 15.0)])
+def test_floor_plans_are_traced_in_moments_and_even_noise_in_seconds(side, noise, seconds):
+    """Four million cells with 0.1 % of stray cells: 0.03 s; 50 % of stray cells: 1.5 s a million, when it was written."""
+    occupied = floor_plan(side, noise)
+    started = time.perf_counter()
+    polygons = trace(occupied)
+    assert time.perf_counter() - started < seconds
+    assert len(polygons) > 3000

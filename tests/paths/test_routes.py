@@ -10,7 +10,7 @@ from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
-from coord.paths.shortest import shortest_paths
+from coord.paths.routes import find_routes
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
@@ -27,7 +27,7 @@ def test_paths_come_in_the_order_of_the_robots():
     """Each from its own start to its own goal, and progress counts up to all of them."""
     robots = [robot(f"r{k}", (1.0, 1.0 + k), (19.0, 14.0 - k), 0.2 + 0.05 * k) for k in range(6)]
     seen = []
-    paths = shortest_paths(problem(robots, [Circle("c", (10.0, 7.5), 2.0)]), seen.append)
+    paths = [route.path for route in find_routes(problem(robots, [Circle("c", (10.0, 7.5), 2.0)]), done=seen.append)]
     assert seen == [1, 2, 3, 4, 5, 6]
     for one, path in zip(robots, paths, strict=True):
         assert path.start[:2] == one.start
@@ -38,18 +38,15 @@ def test_larger_robots_keep_farther_away():
     """The least distance from a column is each robot's own radius and the clearance."""
     sizes = (0.2, 0.4, 0.6)
     robots = [robot(f"r{size}", (2.0, 7.5), (18.0, 7.5), size) for size in sizes]
-    for size, path in zip(
-        sizes, shortest_paths(problem(robots, [Circle("c", (10.0, 7.5), 1.0)]), lambda _: None), strict=True
-    ):
-        at = path.point(np.linspace(0, path.length, 5000))
+    for size, route in zip(sizes, find_routes(problem(robots, [Circle("c", (10.0, 7.5), 1.0)])), strict=True):
+        at = route.path.point(np.linspace(0, route.path.length, 5000))
         assert np.hypot(*(at - (10.0, 7.5)).T).min() == pytest.approx(1.0 + size + 0.05, abs=1e-5)
 
 
 def test_a_robot_at_its_goal_has_a_path_without_length():
     """Also where it touches an obstacle."""
-    (path,) = shortest_paths(
-        problem([robot("r", (5.0, 5.0), (5.0, 5.0))], [Circle("c", (5.0, 6.35), 1.0)]), lambda _: None
-    )
+    (route,) = find_routes(problem([robot("r", (5.0, 5.0), (5.0, 5.0))], [Circle("c", (5.0, 6.35), 1.0)]))
+    path = route.path
     assert (path.length, path.end) == (0.0, (5.0, 5.0))
 
 
@@ -66,7 +63,7 @@ def test_all_robots_without_a_way_are_named_with_what_shuts_them_in():
         robot("by", (1, 2), (1, 13)),
     ]
     with pytest.raises(NoPlanError) as caught:
-        shortest_paths(problem(robots, [room, Circle("column", (18.0, 7.0), 0.5)]), lambda _: None)
+        find_routes(problem(robots, [room, Circle("column", (18.0, 7.0), 0.5)]))
     diagnoses = caught.value.diagnoses
     assert [diagnosis.robots for diagnosis in diagnoses] == [("in",), ("out",)]
     assert all(diagnosis.code == "no-way" and '"vault"' in diagnosis.text for diagnosis in diagnoses)
@@ -79,7 +76,7 @@ def test_a_door_too_narrow_is_measured():
     """A wall with a door of 0.6 m and a robot that needs 0.7 m: both walls are named, and how much gets through."""
     walls = [rectangle("low", (9.0, 0.0, 11.0, 7.0)), rectangle("high", (9.0, 7.6, 11.0, 15.0))]
     with pytest.raises(NoPlanError) as caught:
-        shortest_paths(problem([robot("r", (2.0, 7.0), (18.0, 7.0))], walls), lambda _: None)
+        find_routes(problem([robot("r", (2.0, 7.0), (18.0, 7.0))], walls))
     (diagnosis,) = caught.value.diagnoses
     assert '"low"' in diagnosis.text
     assert '"high"' in diagnosis.text

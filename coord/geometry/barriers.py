@@ -1,0 +1,86 @@
+"""Which obstacles hang together for a robot, and thin barriers that force its path to one side of them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from coord.geometry.growth import Grown
+from coord.geometry.shapes import core
+from coord.model.arrays import Array, Point
+from coord.model.obstacle import Obstacle
+from coord.tolerances import BARRIER
+
+
+def clusters(grown: Grown) -> npt.NDArray[np.intp]:
+    """For each part the number of its cluster (m,): parts between which the robot cannot pass, directly or in a chain.
+
+    A cluster is called by the least of its parts.
+    """
+    count = len(grown.parts)
+    label = np.arange(count)
+    if not count:
+        return label
+    bounds, rho = shapely.bounds(grown.parts), grown.rho[:, None]
+    boxes = shapely.box(*np.hstack([bounds[:, :2] - rho, bounds[:, 2:] + rho]).T)
+    a, b = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    a, b = a[a < b], b[a < b]
+    closed = shapely.dwithin(grown.parts[a], grown.parts[b], grown.rho[a] + grown.rho[b])
+    a, b = a[closed], b[closed]
+    while True:  # labels flow to the least of a cluster, in ever larger strides
+        least = label.copy()
+        np.minimum.at(least, a, label[b])
+        np.minimum.at(least, b, label[a])
+        least = least[least]
+        if np.array_equal(least, label):
+            return label
+        label = least
+
+
+def anchor(grown: Grown, parts: npt.NDArray[np.intp], start: Point, goal: Point) -> Point:
+    """A place in one of some parts' cores [m]: in the middle of the longest stretch of the line that runs through one.
+
+    Where the line runs through none, the place of the cores that is nearest to the line.
+    """
+    line = shapely.LineString([start, goal])
+    shapes = grown.parts[parts]
+    chords = shapely.get_parts(shapely.intersection(shapes, line))
+    lengths = shapely.length(chords)
+    if len(lengths) and lengths.max() > 0:
+        x, y = shapely.get_coordinates(chords[int(lengths.argmax())]).mean(axis=0)
+        return (float(x), float(y))
+    nearest = int(shapely.distance(shapes, line).argmin())
+    x, y = shapely.get_coordinates(shapely.shortest_line(shapes[nearest], line))[0]
+    return (float(x), float(y))
+
+
+def reaches_edge(grown: Grown, parts: npt.NDArray[np.intp]) -> bool:
+    """Whether there is no room for the robot between some of the parts and the edge of the workspace."""
+    bounds, rho = shapely.bounds(grown.parts[parts]), grown.rho[parts, None]
+    xmin, ymin, xmax, ymax = grown.box
+    low, high = bounds[:, :2] - rho, bounds[:, 2:] + rho
+    return bool(np.any(low < [xmin, ymin]) or np.any(high > [xmax, ymax]))
+
+
+def names_of(obstacles: Sequence[Obstacle], grown: Grown, parts: npt.NDArray[np.intp]) -> list[str]:
+    """The obstacles that some parts were made from, in their own order."""
+    tree = shapely.STRtree(np.array([core(obstacle)[0] for obstacle in obstacles], dtype=object))
+    touched = np.unique(tree.query(grown.parts[parts], predicate="intersects")[1])
+    return [obstacles[k].name for k in touched.tolist()]
+
+
+def with_barriers(grown: Grown, segments: Array) -> Grown:
+    """The floor with thin walls along segments (n, 4) [m], whose ends nobody can go round."""
+    walls = shapely.linestrings(segments.reshape(-1, 2, 2))
+    numbers = len(grown.parts) + np.arange(len(segments))
+    return dataclasses.replace(
+        grown,
+        parts=np.append(grown.parts, walls),
+        rho=np.append(grown.rho, np.full(len(segments), BARRIER)),
+        edges=np.vstack([grown.edges, segments]),
+        edge_parts=np.append(grown.edge_parts, numbers),
+    )

@@ -1,0 +1,216 @@
+"""One detour as an exponential rise, a flat top and an exponential fall.
+
+The flanks are fits y = A exp(B x), by least squares in ln y:
+
+    B = (n Sum(x ln y) - Sum x Sum ln y) / (n Sum x^2 - (Sum x)^2)
+    ln A = (Sum ln y Sum x^2 - Sum x Sum(x ln y)) / (n Sum x^2 - (Sum x)^2)
+
+to the upper hull of the envelope and of one foot on either side of it. A fit lies below some of its points, and
+two flanks meet in a corner; so the fits are raised above the hull, joined with the flat top h by
+y = (rise^-p + h^-p + fall^-p)^(-1/p), and all of it is raised until it clears the envelope. An exponential never
+reaches the line either: at 2 % of h it is cut, and a quintic leads on to the line.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from coord.model.arrays import Array
+from coord.model.route import Fit
+from coord.paths.detours import Detour
+
+#: Points of the hull that a flank is fitted to.
+_POINTS = 60
+
+#: Share of the height below which no point is fitted.
+_LOW = 0.02
+
+#: Shares of the height at which the exponential is cut: the first, or the next where there is no room for its tail.
+_CUTS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4)
+
+#: Length of the quintic, in units of 1/B: short enough to save room, long enough to stay above the line.
+_QUINTIC = 1.5
+
+#: [1] Error of ln y where the curve is cut, and rounds at most to get there.
+_CONVERGED, _MOST_ROUNDS = 1e-12, 50
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flanks:
+    """The fitted flanks of a detour; ``rise`` and ``fall`` : points (n, 2) [m] of the hull that they are fitted to.
+
+    ``lifts`` : by how much ln y of rise and fall must be raised to lie above these points.
+    """
+
+    detour: Detour
+    fits: tuple[Fit, Fit]
+    lifts: tuple[float, float]
+    rise: Array
+    fall: Array
+
+
+class Foot(NamedTuple):
+    """Where a flank is cut: x [m], y [m], y' [1] and y'' [1/m] seen uphill, and the length [m] of the quintic below."""
+
+    x: float
+    y: float
+    slope: float
+    second: float
+    length: float
+
+    def quintic(self, u: Array) -> Array:
+        """y, y', y'' (3, n) at the distances u (n,) [m] uphill of the cut, up to 0; flat and straight at the line."""
+        length = self.length
+        t = np.maximum(u / length + 1, 0.0)
+        y, m, q = self.y, self.slope * length, self.second * length**2 / 2
+        a, b, c = 10 * y - 4 * m + q, -15 * y + 7 * m - 2 * q, 6 * y - 3 * m + q
+        return np.stack(
+            [
+                t**3 * (a + t * (b + t * c)),
+                t**2 * (3 * a + t * (4 * b + 5 * t * c)) / length,
+                t * (6 * a + t * (12 * b + 20 * t * c)) / length**2,
+            ]
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """The joined curve y(x): ``raised`` times as high as its formula says, ``extra`` times as high as it has to be."""
+
+    flanks: Flanks
+    p: float
+    extra: float
+    raised: float
+    left: Foot
+    right: Foot
+
+    @property
+    def first(self) -> float:
+        """Where the curve leaves the line: x [m]."""
+        return self.left.x - self.left.length
+
+    @property
+    def last(self) -> float:
+        """Where the curve is back on the line: x [m]."""
+        return self.right.x + self.right.length
+
+    def __call__(self, x: Array) -> tuple[Array, Array, Array]:
+        """Height y [m], y' [1] and y'' [1/m] at x (n,) [m]."""
+        y, m, v = _joined(self.flanks, self.p, self.raised, x)
+        values = np.stack([y, y * m, y * (m * m + v)])
+        for sign, foot in ((1.0, self.left), (-1.0, self.right)):
+            outside = sign * (x - foot.x) < 0
+            values[:, outside] = foot.quintic(sign * (x[outside] - foot.x)) * np.array([[1.0], [sign], [1.0]])
+        return values[0], values[1], values[2]
+
+
+def flanks(detour: Detour, reach: tuple[float, float], share: float) -> Flanks:
+    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope, up to a share of its height.
+
+    What is higher belongs to the flat top: along a roof that hardly rises an exponential would hardly fall.
+    """
+    x = np.concatenate([[detour.first - reach[0]], detour.x, [detour.last + reach[1]]])
+    y = np.concatenate([[0.0], detour.envelope, [0.0]])
+    hull = _upper_hull(x, y)
+    tops = hull[hull[:, 1] >= detour.height * (1 - 1e-9)]
+    rise = _points(hull[hull[:, 0] <= tops[0, 0]], detour.height, share)
+    fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), detour.height, share) * (-1, 1)
+    up, lift_up = _fit("rise", rise, detour.middle)
+    down, lift_down = _fit("fall", fall, detour.middle)
+    return Flanks(detour, (up, down), (lift_up, lift_down), rise, fall)
+
+
+def curve(flanks: Flanks, p: float, extra: float) -> Curve | None:
+    """The curve that clears the envelope, raised by the factor ``extra`` beyond that; None where it needs more room."""
+    detour = flanks.detour
+    y, _, _ = _joined(flanks, p, 1.0, detour.x)
+    raised = float((detour.envelope / y).max()) * extra
+    feet: list[Foot] = []
+    for side, room in ((0, detour.middle - detour.least), (1, detour.most - detour.middle)):
+        for cut in _CUTS:
+            foot = _foot(flanks, p, raised, side, cut * detour.height)
+            if abs(foot.x - detour.middle) + foot.length <= room:
+                feet.append(foot)
+                break
+        else:
+            return None
+    return Curve(flanks, p, extra, raised, feet[0], feet[1])
+
+
+def _upper_hull(x: Array, y: Array) -> Array:
+    """Upper hull (n, 2) of points with increasing x (Andrew's monotone chain)."""
+    hull: list[tuple[float, float]] = []
+    for px, py in zip(x.tolist(), y.tolist(), strict=True):
+        while len(hull) > 1:
+            (ax, ay), (bx, by) = hull[-2], hull[-1]
+            if (bx - ax) * (py - ay) - (by - ay) * (px - ax) < 0:
+                break
+            hull.pop()
+        hull.append((px, py))
+    return np.array(hull)
+
+
+def _points(hull: Array, height: float, share: float) -> Array:
+    """Points on the rising hull, evenly spaced in x, between two shares of the height."""
+    begin, end = np.interp([_LOW * height, share * height], hull[:, 1], hull[:, 0]).tolist()
+    x = np.linspace(begin, end, _POINTS)
+    return np.column_stack([x, np.interp(x, hull[:, 0], hull[:, 1])])
+
+
+def _fit(flank: str, points: Array, middle: float) -> tuple[Fit, float]:
+    """The least-squares fit of ln y, and its largest residual."""
+    x, ln_y = points[:, 0] - middle, np.log(points[:, 1])
+    # centred: the sums of the formula lose no digits then
+    centre, level = math.fsum(x.tolist()) / len(x), math.fsum(ln_y.tolist()) / len(x)
+    dx, dy = x - centre, ln_y - level
+    squares = math.fsum((dx * dx).tolist())
+    B = math.fsum((dx * dy).tolist()) / squares
+    ln_A = level - B * centre
+    residual = ln_y - (ln_A + B * x)
+    spread = math.fsum((dy * dy).tolist())
+    r_squared = 1 - math.fsum((residual * residual).tolist()) / spread
+    return Fit(flank, math.exp(ln_A), B, r_squared), float(residual.max())
+
+
+def _joined(flanks: Flanks, p: float, raised: float, x: Array) -> tuple[Array, Array, Array]:
+    """Height y [m], (ln y)' [1/m] and (ln y)'' [1/m2] of the joined curve.
+
+    ln y is a smooth minimum of three straight lines in x: its slope is their mean slope, weighted with
+    w_i ~ exp(-p g_i), and its second derivative -p times the variance of the slopes.
+    """
+    u = x - flanks.detour.middle
+    rise, fall = flanks.fits
+    lines = np.stack(
+        [
+            math.log(rise.A) + flanks.lifts[0] + rise.B * u,
+            np.full(len(u), math.log(flanks.detour.height)),
+            math.log(fall.A) + flanks.lifts[1] + fall.B * u,
+        ]
+    )
+    slopes = np.array([[rise.B], [0.0], [fall.B]])
+    least = lines.min(axis=0)
+    weights = np.exp(-p * (lines - least))
+    total = weights.sum(axis=0)
+    share = weights / total
+    mean = (share * slopes).sum(axis=0)
+    variance = (share * (slopes - mean) ** 2).sum(axis=0)
+    return raised * np.exp(least - np.log(total) / p), mean, -p * variance
+
+
+def _foot(flanks: Flanks, p: float, raised: float, side: int, cut: float) -> Foot:
+    """Where the rise (side 0) or the fall (1) is cut: at the height ``cut`` [m]."""
+    fit, lift = flanks.fits[side], flanks.lifts[side]
+    # the joined curve is below its rise, so it reaches the height of the cut later than the rise does; ln y is
+    # concave, so Newton's method comes from there and never passes
+    x = flanks.detour.middle + (math.log(cut / raised) - math.log(fit.A) - lift) / fit.B
+    for _ in range(_MOST_ROUNDS):
+        y, m, v = (float(value[0]) for value in _joined(flanks, p, raised, np.array([x])))
+        missing = math.log(cut / y)
+        if missing < _CONVERGED:
+            break
+        x += missing / m
+    return Foot(x, y, y * abs(m), y * (m * m + v), _QUINTIC / abs(m))

@@ -1,0 +1,228 @@
+"""Every robot's route: a straight line where it is free, else round the obstacles on the quicker side.
+
+The quickest way is not always the shortest. The shortest way to the left of everything on the straight line, the
+shortest to the right, the shortest of all, and those that change its mind about one obstacle are made into paths,
+and their times compared. A way whose length alone takes longer than the best so far is not looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from coord.alone.fastest import fastest
+from coord.errors import InvalidValueError, NoPlanError
+from coord.geometry.blocked import Floor
+from coord.geometry.clearance import keeps_distance
+from coord.geometry.growth import grow
+from coord.model.arrays import Point
+from coord.model.footprint import Footprint
+from coord.model.path import straight
+from coord.model.problem import Problem
+from coord.model.profile import VelocityProfile
+from coord.model.result import Diagnosis
+from coord.model.robot import Limits, Robot
+from coord.model.route import Fit, Route, Shaped, Way
+from coord.paths import no_way
+from coord.paths.exponential import exponential
+from coord.paths.fitted import fitted
+from coord.paths.follow import follow
+from coord.paths.given import given
+from coord.paths.sides import NAMES, Blocker, Ground, joined, passed
+from coord.paths.skeleton import NoWay, Skeleton, search_floor
+from coord.paths.taut import taut
+from coord.solvers.jerk import rest_to_rest
+
+#: A way must be quicker than another by this share to be preferred to one that is named before it.
+_QUICKER = 1e-6
+
+
+def find_routes(
+    problem: Problem, shape: str = "fitted", done: Callable[[int], None] = lambda count: None
+) -> list[Route]:
+    """The routes of all robots, in the order of the problem; ``done`` is called with the number found so far.
+
+    Parameters
+    ----------
+    shape : "fitted" (turns as wide as pays), "exponential", "taut" (lines and arcs) or "follow" (along edges).
+
+    Raises
+    ------
+    NoPlanError
+        When robots have no way at all; all of them are named, with what is in the way.
+    """
+    grounds: dict[Footprint, Ground] = {}
+    routes: list[Route] = []
+    missing: list[Diagnosis] = []
+    for robot in problem.robots:
+        if robot.footprint not in grounds:
+            workspace = problem.workspace
+            grown = grow(problem.obstacles, robot.footprint, workspace.clearance, workspace.bounds)
+            grounds[robot.footprint] = Ground(grown)
+        try:
+            routes.append(_Router(problem, robot, grounds[robot.footprint], shape).route())
+        except NoPlanError as failure:
+            missing += failure.diagnoses
+        done(len(routes))
+    if missing:
+        raise NoPlanError(missing)
+    return routes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Candidate:
+    """One way as a path, with its time."""
+
+    sides: tuple[int, ...]
+    bones: Skeleton
+    shaped: Shaped
+    alone: VelocityProfile
+
+
+class _Router:
+    """One robot on its ground."""
+
+    def __init__(self, problem: Problem, robot: Robot, ground: Ground, shape: str) -> None:
+        self.problem, self.robot, self.ground, self.shape = problem, robot, ground, shape
+        self.places: list[Point] = [robot.start]
+        for place in (*robot.via, robot.goal):
+            if place != self.places[-1]:
+                self.places.append(place)
+        self.floor = search_floor(ground.grown, self.places)
+
+    def route(self) -> Route:
+        """The route, or NoPlanError with the reason why there is none."""
+        robot = self.robot
+        for place in self.places:
+            if fault := no_way.shut(self.problem, robot, self.ground.grown, place):
+                raise NoPlanError([fault])
+        if robot.path:
+            return self._given()
+        if len(self.places) == 1:
+            path = straight(robot.start, robot.goal)
+            return Route(path, fastest(path, robot.limits), "straight", "", 0.0)
+        if self.shape == "follow" and len(self.places) == 2:
+            return self._following()
+        legs = self.ground.way(self.floor, self.places)
+        if isinstance(legs, NoWay):
+            raise NoPlanError([self._nowhere()])
+        blockers = self.ground.blockers(self.floor, self.places)
+        base = self._candidate(passed(legs, blockers), joined(legs))
+        if not blockers:
+            shape = self.shape if base.bones.turns else "straight"
+            return Route(base.shaped.path, base.alone, shape, "", base.bones.length, (), *_extras(base))
+        return self._on_a_side(base, blockers)
+
+    def _on_a_side(self, base: _Candidate, blockers: Sequence[Blocker]) -> Route:
+        """The quickest way, or the quickest on the side that was asked for; both sides as ways."""
+        robot = self.robot
+        found: list[_Candidate] = []
+        ways: list[Way] = []
+        for side in (-1, 1):
+            if robot.side != "quickest" and NAMES[side] != robot.side:
+                continue
+            sides = (side,) * len(blockers)
+            one = base if base.sides == sides else self._forced(blockers, sides)
+            if isinstance(one, str):
+                ways.append(Way(NAMES[side], None, None, one))
+            else:
+                ways.append(Way(NAMES[side], one.shaped.path, one.alone.arrival))
+                found.append(one)
+        if robot.side == "quickest":
+            found += [base] if base not in found else []
+            found += self._changed(base, blockers, min(one.alone.arrival for one in found))
+        if not found:
+            raise NoPlanError([no_way.not_on_side(robot, ways[0].reason)])
+        best = found[0]
+        for one in found[1:]:
+            if one.alone.arrival < best.alone.arrival * (1 - _QUICKER):
+                best = one
+        chosen = NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both"
+        return Route(best.shaped.path, best.alone, self.shape, chosen, best.bones.length, tuple(ways), *_extras(best))
+
+    def _forced(self, blockers: Sequence[Blocker], sides: tuple[int, ...]) -> _Candidate | str:
+        """The way on given sides, or why there is none."""
+        legs = self.ground.way(self.floor, self.places, blockers, sides)
+        if isinstance(legs, NoWay):
+            return no_way.on_side(self.problem, self.ground, blockers, NAMES[sides[0]])
+        return self._candidate(sides, joined(legs))
+
+    def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: float) -> Iterator[_Candidate]:
+        """Ways that pass one blocker on the other side than the shortest, as far as they might be quicker."""
+        if len(blockers) < 3:  # changing one of two is left of both or right of both
+            return
+        for k in range(len(blockers)):
+            sides = (*base.sides[:k], -base.sides[k], *base.sides[k + 1 :])
+            slack = best - rest_to_rest(base.bones.length, self.robot.limits).arrival
+            longest = base.bones.length + slack * self.robot.limits.speed  # time grows by 1/speed a metre, or more
+            legs = self.ground.way(self.floor, self.places, blockers, sides, longest)
+            if not isinstance(legs, NoWay) and len(set(sides)) > 1:
+                one = self._candidate(sides, joined(legs))
+                best = min(best, one.alone.arrival)
+                yield one
+
+    def _candidate(self, sides: tuple[int, ...], bones: Skeleton) -> _Candidate:
+        limits = self.robot.limits
+        shaped = _shaped(self.shape, bones, limits, self.floor)
+        if shaped is None:
+            raise NoPlanError([no_way.no_room_to_turn(self.robot)])
+        return _Candidate(sides, bones, shaped, fastest(shaped.path, limits))
+
+    def _following(self) -> Route:
+        """Along the edges of what is in the way: the shorter way round, or the side that was asked for."""
+        robot, limits = self.robot, self.robot.limits
+        legs = self.ground.way(self.floor, self.places)
+        if isinstance(legs, NoWay):
+            raise NoPlanError([self._nowhere()])
+        shortest = math.fsum(leg.length for leg in legs)
+        if not any(leg.turns for leg in legs):
+            path = straight(robot.start, robot.goal)
+            return Route(path, fastest(path, limits), "straight", "", shortest)
+        sides = [side for side in ("right", "left") if robot.side in ("quickest", side)]
+        followed = {side: follow(self.floor, robot.start, robot.goal, limits, side) for side in sides}
+        ways = tuple(
+            Way(side, None, None, one)
+            if isinstance(one, str)
+            else Way(side, one.path, fastest(one.path, limits).arrival)
+            for side, one in followed.items()
+        )
+        asked = None if robot.side == "quickest" else robot.side
+        chosen = followed[asked] if asked else follow(self.floor, robot.start, robot.goal, limits)
+        if isinstance(chosen, str):
+            raise NoPlanError([no_way.not_on_side(robot, chosen) if asked else self._nowhere()])
+        same = [way.side for way in ways if way.length == chosen.path.length]
+        side = asked or (same[0] if same else "both")
+        alone = fastest(chosen.path, limits)
+        return Route(chosen.path, alone, "follow", side, shortest, ways, chosen.fits, chosen.remarks)
+
+    def _given(self) -> Route:
+        """The polyline of the problem, with its corners rounded, if it keeps the distance."""
+        robot, grown = self.robot, self.ground.grown
+        try:
+            path = given(robot.path, robot.corner_radius, robot.start, robot.goal)
+        except InvalidValueError as error:
+            raise NoPlanError([no_way.bad_path(robot, sentence) for _, sentence in error.faults]) from error
+        if not keeps_distance(Floor(grown, grown.rho), path):
+            raise NoPlanError([no_way.given_too_near(self.problem, robot, grown, path)])
+        length = math.fsum(math.dist(a, b) for a, b in pairwise(robot.path))
+        return Route(path, fastest(path, robot.limits), "given", "", min(length, path.length))
+
+    def _nowhere(self) -> Diagnosis:
+        return no_way.nowhere(self.problem, self.robot, self.ground, self.floor, self.places)
+
+
+def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor) -> Shaped | None:
+    """A skeleton as a path; None where its turns find no room, which only places to pass bring about."""
+    if shape == "exponential":
+        return exponential(bones, limits, floor)
+    path = taut(bones, floor) if shape == "taut" else fitted(bones, limits, floor)
+    remarks: tuple[str, ...] = ()
+    if shape == "follow":
+        remarks = ("Fitted turns instead of following edges: the robot has places to pass.",)
+    return None if path is None else Shaped(path, remarks=remarks)
+
+
+def _extras(one: _Candidate) -> tuple[tuple[Fit, ...], tuple[str, ...]]:
+    return one.shaped.fits, one.shaped.remarks
