@@ -43,5 +43,5 @@ REGION_CELL: Final = 0.05
 #: [m] Arcs are cut into chords whose distance from the arc stays below this.
 CHORD_SAGITTA: Final = 2e-4
 
-#: [m] Half the thickness of the barriers that force a path to one side of an obstacle.
+#: [m] Arcs keep this from the barriers that force a path to one side of an obstacle.
 BARRIER: Final = 1e-5

@@ -35,19 +35,21 @@ class Shaped:
 class Way:
     """One side of what blocks the straight line.
 
-    ``side`` : "left" or "right", seen from start to goal; ``path`` None where there is no such way, and
-    ``reason`` then says why; ``time`` [s] alone, from rest to rest.
+    Parameters
+    ----------
+    side : "left" or "right", seen from start to goal.
+    length, time : of the path [m], alone and from rest to rest [s]; None where there is no way on this side. Where
+        ``is_bound``, no path on this side is shorter or quicker, which was enough to prefer another.
+    path : None where there is no way, or only its bounds are known.
+    reason : why there is no way.
     """
 
     side: str
-    path: Path | None
+    length: float | None
     time: float | None
+    path: Path | None = None
+    is_bound: bool = False
     reason: str = ""
-
-    @property
-    def length(self) -> float | None:
-        """Length of the path [m]."""
-        return None if self.path is None else self.path.length
 
 
 @dataclass(frozen=True, slots=True, eq=False)

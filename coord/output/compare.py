@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
 from coord.model.problem import Problem
 from coord.model.result import Plan
 from coord.model.robot import Robot
+from coord.output.plan_file import footprint_words
 
 Named = TypeVar("Named", Robot, Obstacle)
 
@@ -74,4 +76,7 @@ def _shape(obstacle: Obstacle) -> object:
 
 
 def _text(value: object) -> str:
+    if isinstance(value, Footprint):
+        ((kind, size),) = footprint_words(value).items()
+        return f"{{ {kind} = {size} }}" + (f' with heading "{value.heading}"' if value.vertices else "")
     return f'"{value}"' if isinstance(value, str) else str(value)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import Final, NoReturn
 
 from coord.errors import BadFileError, Fault
+from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
 from coord.model.result import Plan, RobotPlan
 
@@ -85,8 +86,8 @@ def _robot(robot: RobotPlan) -> str:
     priority = robot.robot.priority
     fields: dict[str, object] = {
         "name": robot.robot.name,
-        "footprint": {"disc": float(robot.robot.footprint.radius)},
-        "heading": "fixed",
+        "footprint": footprint_words(robot.robot.footprint),
+        "heading": robot.robot.footprint.heading if robot.robot.footprint.vertices else "fixed",
         "limits": {
             "speed": float(limits.speed),
             "acceleration": float(limits.acceleration),
@@ -113,6 +114,20 @@ def _robot(robot: RobotPlan) -> str:
         "how": robot.how,
     }
     return "{" + ",\n  ".join(f'"{key}": {_json(value)}' for key, value in fields.items()) + "}"
+
+
+def footprint_words(footprint: Footprint) -> dict[str, object]:
+    """A footprint as plan and problem files write it: {"disc": radius}, {"square": side} or {"polygon": corners}.
+
+    Only a square that ``coord.model.footprint.square`` would make is written as one; any other is a polygon, so
+    that what is read back is the same to the last bit.
+    """
+    if not footprint.vertices:
+        return {"disc": float(footprint.radius)}
+    half = float(footprint.vertices[2][0])
+    if half > 0 and footprint.vertices == ((-half, -half), (half, -half), (half, half), (-half, half)):
+        return {"square": 2 * half}
+    return {"polygon": [_floats(vertex) for vertex in footprint.vertices]}
 
 
 def _obstacle(obstacle: Obstacle) -> Mapping[str, object]:

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 
 from coord.errors import BadFileError, Fault, InvalidValueError
 from coord.model.arrays import frozen
-from coord.model.footprint import Footprint
+from coord.model.footprint import Footprint, polygon, square
 from coord.model.obstacle import Circle, Obstacle, Polygon
 from coord.model.path import Path
 from coord.model.problem import Problem, Workspace
@@ -65,7 +65,9 @@ class _Obstacle(_Form):
 
 
 class _Footprint(_Form):
-    disc: Number
+    disc: Number | None = None
+    square: Number | None = None
+    polygon: list[Pair] | None = None
 
 
 class _Limits(_Form):
@@ -90,7 +92,7 @@ class _Profile(_Form):
 class _Robot(_Form):
     name: Text
     footprint: _Footprint
-    heading: Literal["fixed"]
+    heading: Literal["fixed", "path"]
     limits: _Limits
     start: Pair
     goal: Pair
@@ -178,7 +180,7 @@ def _problem(form: _Plan, robots: list[RobotPlan], obstacles: list[Obstacle]) ->
 def _robot(form: _Robot) -> RobotPlan:
     robot = Robot(
         name=form.name,
-        footprint=Footprint(form.footprint.disc),
+        footprint=_footprint(form.footprint, form.heading),
         limits=Limits(**dict(form.limits)),
         start=form.start,
         goal=form.goal,
@@ -186,9 +188,10 @@ def _robot(form: _Robot) -> RobotPlan:
         release=form.release,
     )
     profile = form.profile
+    pieces = [piece for piece in form.path.pieces if piece[0] > 0]  # of others there is a fault already
     return RobotPlan(
         robot=robot,
-        path=Path(form.path.start, frozen(form.path.pieces, 3)),
+        path=Path(form.path.start, frozen(pieces, 3)),
         profile=VelocityProfile(frozen(profile.times), frozen(profile.states, 3), frozen(profile.jerks)),
         solo_arrival=form.solo_arrival,
         solo_bound=form.solo_bound,
@@ -197,6 +200,17 @@ def _robot(form: _Robot) -> RobotPlan:
         before=tuple(form.before),
         how=form.how,
     )
+
+
+def _footprint(form: _Footprint, heading: str) -> Footprint:
+    given = [(kind, size) for kind, size in form if size is not None]
+    if len(given) != 1:
+        got = " and ".join(kind for kind, _ in given) or "none"
+        raise InvalidValueError([("footprint", f'a footprint is one of "disc", "square", "polygon" (got {got})')])
+    ((kind, size),) = given
+    if kind == "disc":
+        return Footprint(size)  # turning changes nothing about a disc
+    return square(size, heading) if kind == "square" else polygon(size, heading)
 
 
 def _obstacle(form: _Obstacle) -> Obstacle:

@@ -31,10 +31,8 @@ from coord.paths.skeleton import Skeleton
 from coord.paths.taut import taut
 from coord.tolerances import SAME_PLACE
 
-#: Distances of the feet from the obstacle in units of its height, shares of the height up to which flanks are
-#: fitted, and exponents of the join, that are tried.
+#: Distances of the feet from the obstacle in units of its height, and exponents of the join, that are tried.
 _REACHES = (1.0, 0.5, 1.5, 2.5, 4.0)
-_SHARES = (1.0, 0.5)
 _JOINS = (1.5, 2.0, 3.0)
 
 #: A foot takes up to this share of the room before an obstacle; B h, the slope of a flank at the top, is not larger.
@@ -140,7 +138,7 @@ def _bend(line: Line, detour: Detour, limits: Limits) -> _Bend | set[int] | str:
     """The quickest curve past a detour that keeps the distance; or the parts that are still in its way; or why not."""
     rooms = _ROOM * (detour.first - detour.least), _ROOM * (detour.most - detour.last)
     feet = {(min(r * detour.height, rooms[0]), min(r * detour.height, rooms[1])): None for r in _REACHES}
-    bends = [_raised(line, flanks(detour, reach, share), p, 1.0) for reach, share, p in product(feet, _SHARES, _JOINS)]
+    bends = [_raised(line, flanks(detour, reach), p, 1.0) for reach, p in product(feet, _JOINS)]
     options = [(_time(_path(line, [bend]), limits), bend) for bend in bends if bend is not None]
     if not options:
         return f"the detour {_where(detour)} has too little room for its feet"

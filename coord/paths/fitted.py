@@ -9,6 +9,7 @@ always an outcome.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -40,7 +41,7 @@ _GOOD_ENOUGH = 2e-4
 _LEAST_GAIN = 1e-6
 
 #: Clothoids are cut where the speed cap has changed by this factor, for comparing times.
-_CAP_RATIO = 1.3
+_CAP_RATIO = 1.5
 
 
 def fitted(skeleton: Skeleton, limits: Limits, floor: Floor) -> Path | None:
@@ -100,9 +101,13 @@ def _quickest(
     """The quickest of some bends at turn k that keeps the distance and takes less than ``least`` [s], if any does."""
     trials = [bends.changed(k, bend) for bend in candidates if bend != bends.bends[k]]
     timed = [(clock(trial.pieces()), trial) for trial in trials if trial.fits]
+    too_wide: dict[float, float] = {}  # for each share the least radius that came too near to something
     for time, trial in sorted(timed, key=lambda entry: entry[0]):
+        bend = trial.bends[k]
         if time >= least:
             return None
-        if trial.settle() and keeps_distance(floor, path := trial.path(), *trial.moved):
-            return time, trial, path
+        if bend.radius < too_wide.get(bend.share, math.inf) and trial.settle():
+            if keeps_distance(floor, path := trial.path(), *trial.moved):
+                return time, trial, path
+            too_wide[bend.share] = bend.radius
     return None

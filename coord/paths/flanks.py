@@ -26,14 +26,15 @@ from coord.paths.detours import Detour
 #: Points of the hull that a flank is fitted to.
 _POINTS = 60
 
-#: Share of the height below which no point is fitted.
-_LOW = 0.02
+#: Shares of the height between which points are fitted. What is higher belongs to the flat top: along a roof that
+#: hardly rises an exponential would hardly fall, and would need a floor's length to do so.
+_LOW, _HIGH = 0.02, 0.7
 
 #: Shares of the height at which the exponential is cut: the first, or the next where there is no room for its tail.
 _CUTS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4)
 
-#: Length of the quintic, in units of 1/B: short enough to save room, long enough to stay above the line.
-_QUINTIC = 1.5
+#: Lengths of the quintic, in units of 1/B, the smoothest first.
+_QUINTICS = (3.0, 2.0, 1.5)
 
 #: [1] Error of ln y where the curve is cut, and rounds at most to get there.
 _CONVERGED, _MOST_ROUNDS = 1e-12, 50
@@ -108,17 +109,14 @@ class Curve:
         return values[0], values[1], values[2]
 
 
-def flanks(detour: Detour, reach: tuple[float, float], share: float) -> Flanks:
-    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope, up to a share of its height.
-
-    What is higher belongs to the flat top: along a roof that hardly rises an exponential would hardly fall.
-    """
+def flanks(detour: Detour, reach: tuple[float, float]) -> Flanks:
+    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope."""
     x = np.concatenate([[detour.first - reach[0]], detour.x, [detour.last + reach[1]]])
     y = np.concatenate([[0.0], detour.envelope, [0.0]])
     hull = _upper_hull(x, y)
     tops = hull[hull[:, 1] >= detour.height * (1 - 1e-9)]
-    rise = _points(hull[hull[:, 0] <= tops[0, 0]], detour.height, share)
-    fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), detour.height, share) * (-1, 1)
+    rise = _points(hull[hull[:, 0] <= tops[0, 0]], detour.height)
+    fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), detour.height) * (-1, 1)
     up, lift_up = _fit("rise", rise, detour.middle)
     down, lift_down = _fit("fall", fall, detour.middle)
     return Flanks(detour, (up, down), (lift_up, lift_down), rise, fall)
@@ -131,13 +129,10 @@ def curve(flanks: Flanks, p: float, extra: float) -> Curve | None:
     raised = float((detour.envelope / y).max()) * extra
     feet: list[Foot] = []
     for side, room in ((0, detour.middle - detour.least), (1, detour.most - detour.middle)):
-        for cut in _CUTS:
-            foot = _foot(flanks, p, raised, side, cut * detour.height)
-            if abs(foot.x - detour.middle) + foot.length <= room:
-                feet.append(foot)
-                break
-        else:
+        foot = _fitting(flanks, p, raised, side, room)
+        if foot is None:
             return None
+        feet.append(foot)
     return Curve(flanks, p, extra, raised, feet[0], feet[1])
 
 
@@ -154,9 +149,9 @@ def _upper_hull(x: Array, y: Array) -> Array:
     return np.array(hull)
 
 
-def _points(hull: Array, height: float, share: float) -> Array:
+def _points(hull: Array, height: float) -> Array:
     """Points on the rising hull, evenly spaced in x, between two shares of the height."""
-    begin, end = np.interp([_LOW * height, share * height], hull[:, 1], hull[:, 0]).tolist()
+    begin, end = np.interp([_LOW * height, _HIGH * height], hull[:, 1], hull[:, 0]).tolist()
     x = np.linspace(begin, end, _POINTS)
     return np.column_stack([x, np.interp(x, hull[:, 0], hull[:, 1])])
 
@@ -201,8 +196,18 @@ def _joined(flanks: Flanks, p: float, raised: float, x: Array) -> tuple[Array, A
     return raised * np.exp(least - np.log(total) / p), mean, -p * variance
 
 
+def _fitting(flanks: Flanks, p: float, raised: float, side: int, room: float) -> Foot | None:
+    """The lowest cut and the longest quintic that end within the room [m] from the detour's middle."""
+    for cut in _CUTS:
+        foot = _foot(flanks, p, raised, side, cut * flanks.detour.height)
+        for longer in _QUINTICS:
+            if abs(foot.x - flanks.detour.middle) + longer * foot.length <= room:
+                return foot._replace(length=longer * foot.length)
+    return None
+
+
 def _foot(flanks: Flanks, p: float, raised: float, side: int, cut: float) -> Foot:
-    """Where the rise (side 0) or the fall (1) is cut: at the height ``cut`` [m]."""
+    """Where the rise (side 0) or the fall (1) has the height ``cut`` [m], with a quintic of length 1/B."""
     fit, lift = flanks.fits[side], flanks.lifts[side]
     # the joined curve is below its rise, so it reaches the height of the cut later than the rise does; ln y is
     # concave, so Newton's method comes from there and never passes
@@ -213,4 +218,4 @@ def _foot(flanks: Flanks, p: float, raised: float, side: int, cut: float) -> Foo
         if missing < _CONVERGED:
             break
         x += missing / m
-    return Foot(x, y, y * abs(m), y * (m * m + v), _QUINTIC / abs(m))
+    return Foot(x, y, y * abs(m), y * (m * m + v), 1 / abs(m))

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coord.geometry.barriers import names_of, reaches_edge
-from coord.geometry.blocked import Floor
+from coord.geometry.clusters import names_of, reaches_edge
 from coord.geometry.enclosure import enclosing
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import part_distances
@@ -16,7 +15,7 @@ from coord.model.path import Path
 from coord.model.problem import Problem
 from coord.model.result import Diagnosis
 from coord.model.robot import Robot
-from coord.paths.sides import Blocker, Ground
+from coord.paths.sides import Blocker, Ground, Ways
 from coord.tolerances import DISTANCE
 
 #: More obstacles than this are not named.
@@ -41,9 +40,9 @@ def _standing(robot: Robot, which: str, place: Point, missing: float, name: str)
     return Diagnosis("no-room", (robot.name,), text, place, None, f"Move its {which} by {missing:.3g} m or more.")
 
 
-def nowhere(problem: Problem, robot: Robot, ground: Ground, floor: Floor, places: Sequence[Point]) -> Diagnosis:
+def nowhere(problem: Problem, robot: Robot, ways: Ways) -> Diagnosis:
     """No way at all: the end, or via point, that is shut in, by what, and how wide the widest gap is."""
-    start, goal = ground.first_cut(floor, places)
+    start, goal = ways.first_cut()
     reach = robot.footprint.radius + problem.workspace.clearance
     end, names, gap = enclosing(problem.obstacles, problem.workspace.bounds, reach, start, goal)
     place = goal if end == "goal" else start

@@ -8,7 +8,7 @@ and their times compared. A way whose length alone takes longer than the best so
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,23 +30,31 @@ from coord.paths.exponential import exponential
 from coord.paths.fitted import fitted
 from coord.paths.follow import follow
 from coord.paths.given import given
-from coord.paths.sides import NAMES, Blocker, Ground, joined, passed
-from coord.paths.skeleton import NoWay, Skeleton, search_floor
+from coord.paths.sides import NAMES, Blocker, Ground, Ways, joined, passed
+from coord.paths.skeleton import NoWay, Skeleton
 from coord.paths.taut import taut
 from coord.solvers.jerk import rest_to_rest
+
+#: Of the ways that pass one obstacle on the other side than the shortest, so many are looked at, the shortest first.
+_MOST_CHANGED = 2
 
 #: A way must be quicker than another by this share to be preferred to one that is named before it.
 _QUICKER = 1e-6
 
 
 def find_routes(
-    problem: Problem, shape: str = "fitted", done: Callable[[int], None] = lambda count: None
+    problem: Problem,
+    shape: str = "fitted",
+    done: Callable[[int], None] = lambda count: None,
+    *,
+    thorough: bool = False,
 ) -> list[Route]:
     """The routes of all robots, in the order of the problem; ``done`` is called with the number found so far.
 
     Parameters
     ----------
     shape : "fitted" (turns as wide as pays), "exponential", "taut" (lines and arcs) or "follow" (along edges).
+    thorough : make both sides into paths, also where the length of one shows that it cannot be the quicker.
 
     Raises
     ------
@@ -62,7 +70,7 @@ def find_routes(
             grown = grow(problem.obstacles, robot.footprint, workspace.clearance, workspace.bounds)
             grounds[robot.footprint] = Ground(grown)
         try:
-            routes.append(_Router(problem, robot, grounds[robot.footprint], shape).route())
+            routes.append(_Router(problem, robot, grounds[robot.footprint], shape, thorough).route())
         except NoPlanError as failure:
             missing += failure.diagnoses
         done(len(routes))
@@ -76,6 +84,7 @@ class _Candidate:
     """One way as a path, with its time."""
 
     sides: tuple[int, ...]
+    legs: Sequence[Skeleton]
     bones: Skeleton
     shaped: Shaped
     alone: VelocityProfile
@@ -84,13 +93,14 @@ class _Candidate:
 class _Router:
     """One robot on its ground."""
 
-    def __init__(self, problem: Problem, robot: Robot, ground: Ground, shape: str) -> None:
-        self.problem, self.robot, self.ground, self.shape = problem, robot, ground, shape
+    def __init__(self, problem: Problem, robot: Robot, ground: Ground, shape: str, thorough: bool) -> None:
+        self.problem, self.robot, self.ground, self.shape, self.thorough = problem, robot, ground, shape, thorough
         self.places: list[Point] = [robot.start]
         for place in (*robot.via, robot.goal):
             if place != self.places[-1]:
                 self.places.append(place)
-        self.floor = search_floor(ground.grown, self.places)
+        self.ways = Ways(ground, self.places)
+        self.floor = self.ways.floor
 
     def route(self) -> Route:
         """The route, or NoPlanError with the reason why there is none."""
@@ -105,11 +115,11 @@ class _Router:
             return Route(path, fastest(path, robot.limits), "straight", "", 0.0)
         if self.shape == "follow" and len(self.places) == 2:
             return self._following()
-        legs = self.ground.way(self.floor, self.places)
+        legs = self.ways.shortest()
         if isinstance(legs, NoWay):
             raise NoPlanError([self._nowhere()])
-        blockers = self.ground.blockers(self.floor, self.places)
-        base = self._candidate(passed(legs, blockers), joined(legs))
+        blockers = self.ways.blockers()
+        base = self._candidate(passed(legs, blockers), legs)
         if not blockers:
             shape = self.shape if base.bones.turns else "straight"
             return Route(base.shaped.path, base.alone, shape, "", base.bones.length, (), *_extras(base))
@@ -118,62 +128,62 @@ class _Router:
     def _on_a_side(self, base: _Candidate, blockers: Sequence[Blocker]) -> Route:
         """The quickest way, or the quickest on the side that was asked for; both sides as ways."""
         robot = self.robot
-        found: list[_Candidate] = []
-        ways: list[Way] = []
-        for side in (-1, 1):
-            if robot.side != "quickest" and NAMES[side] != robot.side:
-                continue
+        asked = [side for side in (-1, 1) if robot.side in ("quickest", NAMES[side])]
+        found = [base] if robot.side == "quickest" or base.sides == (asked[0],) * len(blockers) else []
+        ways = []
+        for side in asked:
             sides = (side,) * len(blockers)
-            one = base if base.sides == sides else self._forced(blockers, sides)
-            if isinstance(one, str):
-                ways.append(Way(NAMES[side], None, None, one))
+            limit = self._longest(base, found) if found and not self.thorough else math.inf
+            legs = base.legs if base.sides == sides else self.ways.shortest(blockers, sides, limit)
+            if isinstance(legs, NoWay) and limit < math.inf:
+                ways.append(Way(NAMES[side], limit, _quickest(found).alone.arrival, is_bound=True))
+            elif isinstance(legs, NoWay):
+                reason = no_way.on_side(self.problem, self.ground, blockers, NAMES[side])
+                ways.append(Way(NAMES[side], None, None, reason=reason))
             else:
-                ways.append(Way(NAMES[side], one.shaped.path, one.alone.arrival))
+                one = base if legs is base.legs else self._candidate(sides, legs)
+                ways.append(Way(NAMES[side], one.shaped.path.length, one.alone.arrival, one.shaped.path))
                 found.append(one)
-        if robot.side == "quickest":
-            found += [base] if base not in found else []
-            found += self._changed(base, blockers, min(one.alone.arrival for one in found))
         if not found:
             raise NoPlanError([no_way.not_on_side(robot, ways[0].reason)])
-        best = found[0]
-        for one in found[1:]:
-            if one.alone.arrival < best.alone.arrival * (1 - _QUICKER):
-                best = one
-        chosen = NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both"
-        return Route(best.shaped.path, best.alone, self.shape, chosen, best.bones.length, tuple(ways), *_extras(best))
+        best = _quickest(found)
+        if robot.side == "quickest":
+            best = _quickest([best, *self._changed(base, blockers, best)])
+        side_name = NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both"
+        path, extras = best.shaped.path, _extras(best)
+        return Route(path, best.alone, self.shape, side_name, best.bones.length, tuple(ways), *extras)
 
-    def _forced(self, blockers: Sequence[Blocker], sides: tuple[int, ...]) -> _Candidate | str:
-        """The way on given sides, or why there is none."""
-        legs = self.ground.way(self.floor, self.places, blockers, sides)
-        if isinstance(legs, NoWay):
-            return no_way.on_side(self.problem, self.ground, blockers, NAMES[sides[0]])
-        return self._candidate(sides, joined(legs))
-
-    def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: float) -> Iterator[_Candidate]:
-        """Ways that pass one blocker on the other side than the shortest, as far as they might be quicker."""
-        if len(blockers) < 3:  # changing one of two is left of both or right of both
-            return
+    def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: _Candidate) -> list[_Candidate]:
+        """The shortest ways that pass one blocker on the other side than the shortest, if they might be quicker."""
+        longest, found = self._longest(base, [best]), []
         for k in range(len(blockers)):
             sides = (*base.sides[:k], -base.sides[k], *base.sides[k + 1 :])
-            slack = best - rest_to_rest(base.bones.length, self.robot.limits).arrival
-            longest = base.bones.length + slack * self.robot.limits.speed  # time grows by 1/speed a metre, or more
-            legs = self.ground.way(self.floor, self.places, blockers, sides, longest)
-            if not isinstance(legs, NoWay) and len(set(sides)) > 1:
-                one = self._candidate(sides, joined(legs))
-                best = min(best, one.alone.arrival)
-                yield one
+            if len(set(sides)) > 1:
+                legs = self.ways.shortest(blockers, sides, longest)
+                found += [] if isinstance(legs, NoWay) else [(sides, legs)]
+        found.sort(key=lambda way: math.fsum(leg.length for leg in way[1]))
+        return [self._candidate(sides, legs) for sides, legs in found[:_MOST_CHANGED]]
 
-    def _candidate(self, sides: tuple[int, ...], bones: Skeleton) -> _Candidate:
-        limits = self.robot.limits
+    def _longest(self, base: _Candidate, found: Sequence[_Candidate]) -> float:
+        """The length [m] from which on a way cannot be quicker than the best so far.
+
+        The time that a length alone takes grows by 1/speed a metre, or more.
+        """
+        limits, length = self.robot.limits, base.bones.length
+        slack = _quickest(found).alone.arrival - rest_to_rest(length, limits).arrival
+        return length + slack * limits.speed
+
+    def _candidate(self, sides: tuple[int, ...], legs: Sequence[Skeleton]) -> _Candidate:
+        limits, bones = self.robot.limits, joined(legs)
         shaped = _shaped(self.shape, bones, limits, self.floor)
         if shaped is None:
             raise NoPlanError([no_way.no_room_to_turn(self.robot)])
-        return _Candidate(sides, bones, shaped, fastest(shaped.path, limits))
+        return _Candidate(sides, legs, bones, shaped, fastest(shaped.path, limits))
 
     def _following(self) -> Route:
         """Along the edges of what is in the way: the shorter way round, or the side that was asked for."""
         robot, limits = self.robot, self.robot.limits
-        legs = self.ground.way(self.floor, self.places)
+        legs = self.ways.shortest()
         if isinstance(legs, NoWay):
             raise NoPlanError([self._nowhere()])
         shortest = math.fsum(leg.length for leg in legs)
@@ -183,9 +193,9 @@ class _Router:
         sides = [side for side in ("right", "left") if robot.side in ("quickest", side)]
         followed = {side: follow(self.floor, robot.start, robot.goal, limits, side) for side in sides}
         ways = tuple(
-            Way(side, None, None, one)
+            Way(side, None, None, reason=one)
             if isinstance(one, str)
-            else Way(side, one.path, fastest(one.path, limits).arrival)
+            else Way(side, one.path.length, fastest(one.path, limits).arrival, one.path)
             for side, one in followed.items()
         )
         asked = None if robot.side == "quickest" else robot.side
@@ -210,7 +220,7 @@ class _Router:
         return Route(path, fastest(path, robot.limits), "given", "", min(length, path.length))
 
     def _nowhere(self) -> Diagnosis:
-        return no_way.nowhere(self.problem, self.robot, self.ground, self.floor, self.places)
+        return no_way.nowhere(self.problem, self.robot, self.ways)
 
 
 def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor) -> Shaped | None:
@@ -222,6 +232,15 @@ def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor) -> Shaped
     if shape == "follow":
         remarks = ("Fitted turns instead of following edges: the robot has places to pass.",)
     return None if path is None else Shaped(path, remarks=remarks)
+
+
+def _quickest(candidates: Sequence[_Candidate]) -> _Candidate:
+    """The quickest; right before left before others where they are equally quick."""
+    best = candidates[0]
+    for one in candidates[1:]:
+        if one.alone.arrival < best.alone.arrival * (1 - _QUICKER):
+            best = one
+    return best
 
 
 def _extras(one: _Candidate) -> tuple[tuple[Fit, ...], tuple[str, ...]]:

@@ -14,11 +14,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from coord.geometry.barriers import anchor, clusters, with_barriers
-from coord.geometry.blocked import Floor
+from coord.geometry.clusters import anchor, clusters
 from coord.geometry.growth import Grown
 from coord.model.arrays import Array, Point
-from coord.paths.skeleton import NoWay, Skeleton, Turn, search_floor, skeleton
+from coord.paths.skeleton import NoWay, Skeleton, Turn, search, search_floor
+from coord.paths.tangents import TangentGraph
 
 #: Names of the sides by the sign of the passage: seen from start to goal.
 NAMES = {1: "left", -1: "right"}
@@ -54,53 +54,55 @@ class Ground:
             self._clusters = clusters(self.grown)
         return self._clusters
 
-    def blockers(self, floor: Floor, places: Sequence[Point]) -> tuple[Blocker, ...]:
+
+class Ways:
+    """The ways of one robot from place to place; what one search finds out helps the next."""
+
+    def __init__(self, ground: Ground, places: Sequence[Point]) -> None:
+        """Begin with the floor as these places see it; no place may follow itself."""
+        self.ground, self.floor = ground, search_floor(ground.grown, places)
+        self._legs = list(pairwise(places))
+        self._graphs = [TangentGraph(self.floor, a, b) for a, b in self._legs]
+
+    def blockers(self) -> tuple[Blocker, ...]:
         """What stands on the straight lines from place to place, leg by leg, in the order in which it is met."""
         found = []
-        for leg, (a, b) in enumerate(pairwise(places)):
-            length = math.dist(a, b)
-            hit = floor.hit_parts(np.array([[*a, *b]]))[:, 1] if length > 0 else np.empty(0, dtype=np.intp)
-            direction = ((b[0] - a[0]) / length, (b[1] - a[1]) / length) if len(hit) else (0.0, 0.0)
+        for leg, (a, b) in enumerate(self._legs):
+            hit, label = self.floor.hit_parts(np.array([[*a, *b]]))[:, 1], self.ground.clusters
+            direction = ((b[0] - a[0]) / math.dist(a, b), (b[1] - a[1]) / math.dist(a, b))
             blockers = [
-                Blocker(leg, cluster, anchor(self.grown, hit[self.clusters[hit] == cluster], a, b), direction)
-                for cluster in np.unique(self.clusters[hit]).tolist()
+                Blocker(leg, cluster, anchor(self.ground.grown, hit[label[hit] == cluster], a, b), direction)
+                for cluster in np.unique(label[hit]).tolist()
             ]
             found += sorted(blockers, key=lambda one: math.dist(one.place, a))
         return tuple(found)
 
-    def way(
-        self,
-        floor: Floor,
-        places: Sequence[Point],
-        blockers: Sequence[Blocker] = (),
-        sides: Sequence[int] = (),
-        longest: float = math.inf,
+    def shortest(
+        self, blockers: Sequence[Blocker] = (), sides: Sequence[int] = (), longest: float = math.inf
     ) -> list[Skeleton] | NoWay:
         """The shortest way, leg by leg, that passes some blockers on the sides (+1 left, -1 right).
 
-        ``longest`` : no way where all are longer than this [m].
+        ``longest`` : there is no way where all are longer than this [m].
         """
-        xmin, ymin, xmax, ymax = self.grown.box
+        xmin, ymin, xmax, ymax = self.ground.grown.box
         reach = 2 * math.hypot(xmax - xmin, ymax - ymin) + 1.0
-        legs = []
-        for leg, (a, b) in enumerate(pairwise(places)):
+        legs: list[Skeleton] = []
+        for leg, graph in enumerate(self._graphs):
             barriers = [one.barrier(-side, reach) for one, side in zip(blockers, sides, strict=True) if one.leg == leg]
-            fenced = floor
-            if barriers:
-                fenced = search_floor(with_barriers(self.grown, np.array(barriers)), places)
-            found = skeleton(fenced, a, b, longest)
-            longest -= 0.0 if isinstance(found, NoWay) else found.length
+            graph.bar(np.array(barriers).reshape(-1, 4))
+            found = search(graph, longest - math.fsum(one.length for one in legs))
             if isinstance(found, NoWay):
                 return found
             legs.append(found)
         return legs
 
-    def first_cut(self, floor: Floor, places: Sequence[Point]) -> tuple[Point, Point]:
-        """The first two places between which there is no way."""
-        for a, b in pairwise(places):
-            if isinstance(skeleton(floor, a, b), NoWay):
-                return a, b
-        return places[0], places[-1]
+    def first_cut(self) -> tuple[Point, Point]:
+        """The first two places between which there is no way; the first two if there is one everywhere."""
+        for graph, leg in zip(self._graphs, self._legs, strict=True):
+            graph.bar(np.empty((0, 4)))
+            if isinstance(search(graph), NoWay):
+                return leg
+        return self._legs[0]
 
 
 def joined(legs: Sequence[Skeleton]) -> Skeleton:

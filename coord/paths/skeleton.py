@@ -79,7 +79,12 @@ def skeleton(floor: Floor, start: Point, goal: Point, longest: float = math.inf)
 
     ``longest`` : where every path is longer than this [m], there is no way.
     """
-    graph = TangentGraph(floor, start, goal)
+    return search(TangentGraph(floor, start, goal), longest)
+
+
+def search(graph: TangentGraph, longest: float = math.inf) -> Skeleton | NoWay:
+    """The same on a graph that may know something already, and may have barriers."""
+    floor = graph.floor
     while True:
         found = _Search(graph).run(longest)
         if found is None:

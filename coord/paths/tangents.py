@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from coord.geometry.blocked import Floor, Screen, blocked_angles
 from coord.model.arrays import Array, Point
+from coord.tolerances import BARRIER
 
 TURN = 2 * np.pi
 
@@ -59,6 +60,12 @@ class TangentGraph:
         self._screen = Screen(floor, self.active)
         self._tangents: dict[int, tuple[Tangents, int]] = {}  # with the number of nodes looked at
         self._blocked: dict[int, tuple[list[tuple[float, float]], int]] = {}
+        self._barriers = np.empty((0, 4))
+        self._barred: dict[int, list[tuple[float, float]]] = {}
+
+    def bar(self, barriers: Array) -> None:
+        """Let nothing cross some segments (n, 4) [m] from now on; it replaces those before."""
+        self._barriers, self._barred = barriers, {}
 
     def activate(self, parts: npt.NDArray[np.intp]) -> None:
         """Let more parts of the floor take part."""
@@ -92,7 +99,10 @@ class TangentGraph:
         if len(open_):
             hit = self._screen.is_hit(np.hstack([tangents.starts[open_], tangents.ends[open_]]))
             tangents.tested[open_] = np.where(hit, _HIT, now)
-        return np.asarray(tangents.tested[chosen] == now)
+        free = np.asarray(tangents.tested[chosen] == now)
+        if len(self._barriers):
+            free &= ~_cross(tangents.starts[chosen], tangents.ends[chosen], self._barriers)
+        return free
 
     def free_turn(self, node: int, arriving: float) -> float:
         """How far [rad] one can turn round a corner from a direction on until something is in the way."""
@@ -113,7 +123,15 @@ class TangentGraph:
             more = blocked_angles(center, radius, edges, rho, self.floor.grown.box)
             stretches = stretches + [(first, last) for first, last in more.tolist()]
             self._blocked[circle] = stretches, len(self._rounds)
-        return stretches
+        return stretches + self._barred_stretches(circle) if len(self._barriers) else stretches
+
+    def _barred_stretches(self, circle: int) -> list[tuple[float, float]]:
+        if circle not in self._barred:
+            center, radius = self.places[2 * circle], float(self.radius[2 * circle])
+            thickness = np.full(len(self._barriers), BARRIER)
+            found = blocked_angles(center, radius, self._barriers, thickness, self.floor.grown.box)
+            self._barred[circle] = [(first, last) for first, last in found.tolist()]
+        return self._barred[circle]
 
     def _drawn(self, node: int, known: int, *, goal_too: bool) -> Tangents:
         """Tangents from a node to all nodes that are not known yet (and to the goal), whatever they hit."""
@@ -145,6 +163,20 @@ class TangentGraph:
         lengths, left = np.hypot(*(ends - starts).T), np.hypot(*(self.goal - ends).T)
         untested = np.full(len(starts), _UNTESTED)
         return Tangents(nodes[fits], leaving[fits], arriving[fits], starts, ends, lengths, left, untested)
+
+
+def _cross(starts: Array, ends: Array, barriers: Array) -> npt.NDArray[np.bool_]:
+    """Whether segments (n, 2), (n, 2) cross any of the barriers (b, 4)."""
+    p, along = starts[:, None], (ends - starts)[:, None]
+    q, wall = barriers[None, :, :2], (barriers[:, 2:] - barriers[:, :2])[None]
+    # on which side of the segment the barrier's ends lie, and of the barrier the segment's ends
+    first, second = _side(along, q - p), _side(along, q + wall - p)
+    third, fourth = _side(wall, p - q), _side(wall, p + along - q)
+    return np.asarray(((first * second <= 0) & (third * fourth <= 0)).any(axis=1))
+
+
+def _side(a: Array, b: Array) -> Array:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def turn(side: float, first: float, last: float) -> float:

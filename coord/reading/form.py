@@ -111,7 +111,7 @@ class RobotForm(DefaultsForm):
     goal: Place | None = _takes("[x, y], two numbers in m")
     priority: Number | None = _takes("a number")
     via: list[Place] | None = _takes("a list of points [x, y] in m")
-    path: list[Place] | None = _takes("a list of points [x, y] in m")
+    path: list[Place] | None = _takes("a list of two points [x, y] or more in m", min_length=2)
 
 
 class CircleForm(Form):
@@ -176,7 +176,7 @@ def _sentence(form: type[Form], table: Mapping[str, Any], kind: str, place: KeyP
     field, names = str(place[0]), [str(part) for part in place if isinstance(part, str)]
     inner = _INNER[field] if len(names) > 1 and field in _INNER else None
     if kind == "extra_forbidden":
-        return _unknown(inner or form, names[-1])
+        return unknown(inner or form, names[-1])
     label = ".".join(names)
     got, indices = shown(given), [part for part in place if isinstance(part, int)]
     if indices and names[-1] in _LISTS:
@@ -191,12 +191,12 @@ def _sentence(form: type[Form], table: Mapping[str, Any], kind: str, place: KeyP
 
 
 @lru_cache(maxsize=256)
-def _unknown(form: type[Form], key: str) -> str:
-    """An unknown key: where it belongs, or what may have been meant."""
+def unknown(form: type[Form], key: str, what: str = "key") -> str:
+    """An unknown key, or column of a file of robots: where it belongs, or what may have been meant."""
     places = [place for place, other in _TABLES.items() if key in other.model_fields]
     near = difflib.get_close_matches(key[:100], list(form.model_fields), n=1)
     if places:
         hint = f"; it belongs {places[0]}"
     else:
         hint = f'; did you mean "{near[0]}"?' if near else f"; known are {', '.join(form.model_fields)}"
-    return f"unknown key {shown(key)}{hint}"
+    return f"unknown {what} {shown(key)}{hint}"

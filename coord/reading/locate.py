@@ -133,12 +133,22 @@ def _key(text: str, at: int) -> tuple[tuple[str, ...], int]:
     while match := _KEY.match(text, _end(_SPACE, text, at)):
         name = match[0]
         if len(names) < _LEVELS:
-            names.append(name if name[0] not in "\"'" else tomllib.loads(f"name = {name}")["name"])
+            names.append(_unquoted(name))
         at = _end(_SPACE, text, match.end())
         if text[at : at + 1] != ".":
             break
         at += 1
     return tuple(names), at
+
+
+def _unquoted(name: str) -> str:
+    """The name that a key says; one with escapes that TOML does not know stands for itself."""
+    if name[0] not in "\"'":
+        return name
+    try:
+        return str(tomllib.loads(f"name = {name}")["name"])
+    except tomllib.TOMLDecodeError:
+        return name
 
 
 def _skip(text: str, at: int, stops: str) -> int:

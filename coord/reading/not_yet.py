@@ -22,13 +22,7 @@ class NotYet(NamedTuple):
 
 
 NOT_YET: tuple[NotYet, ...] = (
-    NotYet("file", "robots_file", "a file of robots"),
     NotYet("workspace", "after_arrival", 'after_arrival = "leave"', lambda value: value == "leave"),
-    NotYet("robot", "footprint", "a footprint other than { disc = radius }", lambda shape: "disc" not in shape),
-    NotYet("robot", "heading", 'heading = "path"', lambda value: value == "path"),
-    NotYet("robot", "side", 'a side other than "quickest"', lambda value: value != "quickest"),
-    NotYet("robot", "via", "a list of via points"),
-    NotYet("robot", "path", "a given path"),
     NotYet("map", "origin", "a map that is turned (origin's third number is not 0)", lambda pose: pose[2] != 0),
     NotYet("map", "mode", 'a mode other than "trinary"', lambda mode: mode != "trinary"),
 )

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import pytest
 
-from coord.model.footprint import Footprint
+from coord.model.footprint import Footprint, polygon, square
 from coord.model.obstacle import Circle
 from coord.model.result import Plan
 from coord.output.compare import differences
@@ -80,3 +80,19 @@ def test_another_digest_alone_is_a_difference_and_says_what_it_may_be(sample: Pl
     (found,) = differences(read, replace(sample.problem, digest="cd34"))
     assert 'digest "ab12"' in found
     assert "an option, a weight or a comment" in found
+
+
+def test_shapes_of_robots_are_told_as_problem_files_write_them(sample: Plan, read: Plan):
+    """A square that keeps its heading is not one that turns, and neither is a disc."""
+    problem = sample.problem
+    for footprint, words in (
+        (square(0.6), '{ square = 0.6 } with heading "fixed"'),
+        (square(0.6, "path"), '{ square = 0.6 } with heading "path"'),
+        (
+            polygon([(1, 0), (0, 1), (-1, -1)]),
+            '{ polygon = [[1.0, 0.0], [0.0, 1.0], [-1.0, -1.0]] } with heading "path"',
+        ),
+    ):
+        robots = (replace(problem.robots[0], footprint=footprint), *problem.robots[1:])
+        (found,) = differences(read, replace(problem, robots=robots))
+        assert found == f'robot "red": footprint is {{ disc = 0.3 }} in the plan, {words} in the problem'

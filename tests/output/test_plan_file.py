@@ -1,15 +1,20 @@
 import json
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from coord.errors import BadFileError
 from coord.model.arrays import Array
+from coord.model.footprint import Footprint, polygon, square
 from coord.model.result import Plan
 from coord.output.plan_file import parse, serialise
+from coord.verify import verify
 
 
 def faults_of(data: bytes) -> str:
@@ -139,3 +144,75 @@ def test_all_faults_are_reported_at_once(sample: Plan):
         document["order"].pop()
 
     assert faults_of(changed(sample, change)).count("\n") == 3
+
+
+KITE = [(0.5, 0.1), (0.0, 0.3), (-0.4, 0.0), (0.0, -0.2)]
+
+
+def with_footprint(plan: Plan, footprint: Footprint) -> Plan:
+    """The plan, its first robot of this shape."""
+    first = replace(plan.robots[0], robot=replace(plan.robots[0].robot, footprint=footprint))
+    return replace(plan, robots=(first, *plan.robots[1:]))
+
+
+@pytest.mark.parametrize(
+    ("footprint", "shape", "heading"),
+    [
+        (Footprint(0.3), {"disc": 0.3}, "fixed"),
+        (Footprint(0.3, heading="path"), {"disc": 0.3}, "fixed"),
+        (square(0.6), {"square": 0.6}, "fixed"),
+        (square(0.6, "path"), {"square": 0.6}, "path"),
+        (polygon(KITE), {"polygon": [list(corner) for corner in KITE]}, "path"),
+        (polygon(KITE, "fixed"), {"polygon": [list(corner) for corner in KITE]}, "fixed"),
+        (polygon([(0.3, 0.3), (-0.3, 0.3), (-0.3, -0.3), (0.3, -0.3)]), None, "path"),
+    ],
+)
+def test_a_footprint_is_written_as_the_problem_file_writes_it(
+    sample: Plan, footprint: Footprint, shape: dict[str, Any] | None, heading: str
+):
+    """A disc is a disc whichever way it heads; a square whose corners begin elsewhere is a polygon."""
+    written = json.loads(serialise(with_footprint(sample, footprint)))["robots"][0]
+    assert written["footprint"] == (shape or {"polygon": [list(corner) for corner in footprint.vertices]})
+    assert written["heading"] == heading
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.one_of(
+        st.builds(square, st.floats(0.002, 1e6), st.sampled_from(["fixed", "path"])),
+        st.builds(
+            lambda count, x, y, turn, heading: polygon(
+                [
+                    (x * math.cos(turn + 2 * math.pi * k / count), y * math.sin(turn + 2 * math.pi * k / count))
+                    for k in range(count)
+                ],
+                heading,
+            ),
+            st.integers(3, 12),
+            st.floats(0.05, 10.0),
+            st.floats(0.05, 10.0),
+            st.floats(0.0, 6.0),
+            st.sampled_from(["fixed", "path"]),
+        ),
+        st.builds(Footprint, st.floats(0.001, 1e6)),
+    )
+)
+def test_a_footprint_reads_back_as_it_was_to_the_last_bit(sample: Plan, footprint: Footprint):
+    """Squares and polygons of any size, turning or not; the checker reads them too."""
+    data = serialise(with_footprint(sample, footprint))
+    assert parse(data).robots[0].robot.footprint == footprint
+    assert verify(data).verdict != "malformed"
+
+
+def test_a_footprint_that_is_none_is_named(sample: Plan):
+    """Two shapes at once, no shape, and a polygon that is not convex are no footprints."""
+    for shape, reason in (
+        ({"disc": 0.3, "square": 0.6}, "(got disc and square)"),
+        ({}, "(got none)"),
+        ({"polygon": [[1, 1], [-1, 1], [0, 0], [0, -1]]}, "the footprint must be convex"),
+        ({"square": -1.0}, "the square's side must be > 0 m (got -1)"),
+    ):
+        told = faults_of(changed(sample, lambda d, shape=shape: d["robots"][0].update(footprint=shape)))
+        assert 'robots[0] "red"' in told
+        assert reason in told
+    assert "robots[0].heading" in faults_of(changed(sample, lambda d: d["robots"][0].update(heading="north")))

@@ -20,7 +20,7 @@ from coord.output.plots.forbidden import Window, matters, passes, windows
 from coord.output.plots.giving_way import giving_way
 from coord.output.plots.labels import Clutter, Label, place
 from coord.output.plots.lanes import side_by_side
-from coord.output.plots.outlines import band, distance_field, line
+from coord.output.plots.outlines import band, line
 
 
 @pytest.fixture(autouse=True)
@@ -290,15 +290,6 @@ def test_the_line_of_a_path_bends_so_little_at_a_time_that_it_looks_round():
     poses = line(path)
     assert np.diff(poses[:, 2]).max() <= 0.06
     assert poses[-1, :2] == pytest.approx(path.end)
-
-
-def test_the_reach_of_obstacles_is_their_distance(sample: Plan):
-    """Right wherever it is below the reach, for circles, polygons and inside of rooms."""
-    field = distance_field(sample.problem.obstacles, (0.0, 0.0, 12.0, 8.0), 0.35)
-    row, column = int(np.searchsorted(field.y, 6.0)), int(np.searchsorted(field.x, 2.9))
-    assert field.distance[row, column] == pytest.approx(np.hypot(field.x[column] - 2, field.y[row] - 6) - 0.7)
-    row, column = int(np.searchsorted(field.y, 6.0)), int(np.searchsorted(field.x, 6.7))
-    assert field.distance[row, column] == pytest.approx(field.x[column] - 6.5)
 
 
 def test_drawing_needs_no_global_state_of_matplotlib(tmp_path: File):

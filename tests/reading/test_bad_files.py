@@ -37,14 +37,34 @@ ROBOT_FAULTS = [
     ('heading = "north"', 'heading must be "fixed" or "path" (got "north")'),
     ("side = 1", 'side must be "quickest", "left" or "right" (got 1)'),
     ('via = [[1, 1], [2, "x"]]', 'via must be a list of points [x, y] in m (got "x" as item 2)'),
-    ('heading = "path"', 'heading = "path" is not supported yet'),
-    ('side = "left"', 'a side other than "quickest" is not supported yet'),
-    ("via = [[5, 5]]", "a list of via points is not supported yet"),
-    ("path = [[1, 1], [9, 1]]", "a given path is not supported yet"),
-    ("footprint = { square = 0.6 }", "a footprint other than { disc = radius } is not supported yet"),
     (
-        "footprint = { polygon = [[0, 0], [1, 0], [0, 1]] }",
-        "a footprint other than { disc = radius } is not supported yet",
+        "via = [[9.9, 5]]",
+        "via point 1 (9.9, 5) is 0.2 m too near to the right edge of the workspace: its centre is "
+        "0.1 m from it, radius 0.3 m is needed",
+    ),
+    ("path = []", "path must be a list of two points [x, y] or more in m (got [])"),
+    ("path = [[1, 1]]", "path must be a list of two points [x, y] or more in m (got [[1, 1]])"),
+    ("path = [[1, 1], [5, 5], [9, 2]]", "a given path begins at the robot's start and ends at its goal"),
+    (
+        "path = [[1, 1], [9, 1]]\nside = 'left'",
+        "a robot with a given path has neither side nor via: the path says it all",
+    ),
+    ("footprint = { square = 0.0 }", "the square's side must be > 0 m (got 0)"),
+    (
+        "footprint = { polygon = [[0, 0], [1, 0]] }",
+        "a footprint needs at least 3 corners that are not on one line (got [[0.0, 0.0], [1.0, 0.0]])",
+    ),
+    (
+        "footprint = { polygon = [[1, 0], [0, 1], [-1, 0], [0, -1], [0.1, 0]] }",
+        "the footprint must be convex, without repeated corners",
+    ),
+    (
+        "footprint = { polygon = [[0.1, 0], [1, 0], [0.1, 1]] }",
+        "the footprint must hold its reference point (0, 0)",
+    ),
+    (
+        "footprint = { polygon = [[0, 0], [1, nan], [0, 1]] }",
+        "footprint.polygon must be finite (got nan as item 2)",
     ),
 ]
 
@@ -61,7 +81,9 @@ DEFAULTS_FAULTS = [
     ("weight = -1", "weight must be >= 0 (got -1)"),
     ("footprint = { disc = -1 }", "the disc's radius must be > 0 m (got -1)"),
     ("priority = 1", 'unknown key "priority"; it belongs in [[robots]]'),
-    ('heading = "path"', 'heading = "path" is not supported yet'),
+    ('heading = "north"', 'heading must be "fixed" or "path" (got "north")'),
+    ("path = [[1, 1], [9, 1]]", 'unknown key "path"; it belongs in [[robots]]'),
+    ("footprint = { square = -1 }", "the square's side must be > 0 m (got -1)"),
 ]
 
 
@@ -197,7 +219,9 @@ TOPS = [
     ),
     (HEAD.replace("[w", "nmae = 1\n[w"), 2, 'unknown key "nmae"; did you mean "name"?'),
     (HEAD.replace("[w", "clearance = 1\n[w"), 2, 'unknown key "clearance"; it belongs in [workspace]'),
-    (HEAD.replace("[w", 'robots_file = "r.csv"\n[w'), 2, "a file of robots is not supported yet"),
+    (HEAD.replace("[w", 'robots_file = "r.csv"\n[w'), 2, 'the robots file "r.csv" does not exist'),
+    (HEAD.replace("[w", 'robots_file = "."\n[w'), 2, 'the robots file "." is not a regular file'),
+    (HEAD.replace("[w", "robots_file = 1\n[w"), 2, "robots_file must be the name of a CSV file (got 1)"),
     (HEAD.replace("[w", "plan = 1\n[w"), 2, "[plan]: plan must be one table, written [plan] (got 1)"),
     (HEAD + "[plan]\nsead = 1\n", 5, '[plan]: unknown key "sead"; did you mean "seed"?'),
     (HEAD + "[plan]\nseed = 1.5\n", 5, "[plan]: seed must be a whole number (got 1.5)"),

@@ -19,16 +19,15 @@ def test_every_entry_names_a_field_that_there_is():
 
 def test_what_leaves_the_list_is_no_longer_refused(read, good, faults_of, monkeypatch):
     """The list alone decides: whoever builds a feature removes its entry."""
-    text = good.replace("priority = 1", 'side = "left"')
+    text = good.replace('"stay"', '"leave"')
     assert len(faults_of(text)) == 1
-    rest = tuple(entry for entry in not_yet.NOT_YET if entry.field != "side")
+    rest = tuple(entry for entry in not_yet.NOT_YET if entry.field != "after_arrival")
     monkeypatch.setattr(not_yet, "NOT_YET", rest)
-    assert len(read(text).robots) == 2
+    assert read(text).workspace.after_arrival == "leave"
 
 
 @pytest.mark.parametrize("entry", not_yet.NOT_YET, ids=lambda entry: f"{entry.table}.{entry.field}")
 def test_every_refusal_reads_as_a_sentence(entry):
     """Each entry begins a sentence that ends in the same words."""
-    value = {"map": "x.png", "footprint": {"square": 1}, "origin": [0, 0, 1]}.get(entry.field)
-    value = "leave" if entry.field == "after_arrival" else "path" if entry.field == "heading" else value
+    value = {"after_arrival": "leave", "origin": [0, 0, 1]}.get(entry.field)
     assert not_yet.refusals(entry.table, {entry.field: value})[entry.field].endswith(" is not supported yet")

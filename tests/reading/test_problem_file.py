@@ -67,16 +67,16 @@ def test_all_faults_come_at_once_from_top_to_bottom(faults_of, good):
     bad = (
         good.replace("seed = 3", 'seed = "x"')
         .replace("speed = 1.5", "speed = -1")
-        .replace("priority = 1", 'side = "left"')
+        .replace('"stay"', '"leave"')
         .replace('"blue"', '"red"')
         .replace("start = [3.0, 1.0]", "start = [5.0, 4.5]")
         .replace("speed = 0.7", "speed = 0\njerk = true")
         .replace("radius = 1.0", "radius = -1.0")
     )
     assert faults_of(bad) == [
+        'problem.toml:7: [workspace]: after_arrival = "leave" is not supported yet',
         'problem.toml:10: [plan]: seed must be a whole number (got "x")',
         "problem.toml:16: [defaults]: speed must be > 0 m/s (got -1)",
-        'problem.toml:23: robots[1] "red": a side other than "quickest" is not supported yet',
         'problem.toml:27: robots[2] "red": the name is taken by robots[1]; names must differ',
         'problem.toml:28: robots[2] "red": start (5, 4.5) is 0.75 m too deep in obstacle "rack": '
         "its centre is 0.5 m inside it, radius 0.2 m + clearance 0.05 m are needed",
@@ -201,6 +201,9 @@ VALUES = st.sampled_from(
         "[[1, 1], [2, 2], [1, 2], [2, 1]]",
         "{ disc = -1 }",
         "{ disc = 1, square = 2 }",
+        "{ square = 0.6 }",
+        "{ polygon = [[0.3, 0], [0, 0.3], [-0.3, 0]] }",
+        "[[1, 1], [9, 9]]",
         "{ center = [1, 1], radius = -1 }",
         "{ center = 1 }",
         '"floor.yaml"',
@@ -235,6 +238,9 @@ KEYS = st.sampled_from(
         "robots",
         "'q u'",
         "footprint.disc",
+        "footprint",
+        "corner_radius",
+        "robots_file",
     ]
 )
 TABLES = st.sampled_from(["[robots]", "[[robots]]", "[workspace]", "[[obstacles]]", "[robots.x]", "[plan]", "[[plan]]"])

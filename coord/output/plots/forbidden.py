@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from coord.alone.inverse import time_at
+from coord.conflicts.core import Core, conflict_core
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
@@ -40,7 +42,7 @@ def windows(plan: Plan, ego: RobotPlan, until: float) -> list[Window]:
         reach = ego.robot.footprint.radius + other.robot.footprint.radius + plan.problem.workspace.clearance
         box = _box(other, reach)
         if np.all(box[0] <= corners[1]) and np.all(corners[0] <= box[1]):
-            window = _window(plan, ego, other, reach, until)
+            window = _window(plan, ego, other, until)
             if window is not None:
                 result.append(window)
     return result
@@ -76,7 +78,7 @@ def _taken(window: Window) -> tuple[Array, Array, Array]:
     return window.s[rows], window.t[first], window.t[last]
 
 
-def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: float) -> Window | None:
+def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, until: float) -> Window | None:
     """Sample coarsely to find where the two may come near each other, then finely there."""
     end = other.arrival if plan.problem.workspace.after_arrival == "leave" else until
     if end <= 0 or ego.path.length == 0:
@@ -84,6 +86,7 @@ def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: f
     t, s = np.linspace(0.0, min(end, until), _COARSE), np.linspace(0.0, ego.path.length, _COARSE)
     # between two samples the distance changes by no more than both can move on the way to the nearer one
     slack = (s[1] + t[1] * other.robot.limits.speed) / 2
+    reach = ego.robot.footprint.margin + other.robot.footprint.margin + plan.problem.workspace.clearance
     near = _gap(ego, other, t, s) < reach + slack
     if not near.any():
         return None
@@ -94,9 +97,24 @@ def _window(plan: Plan, ego: RobotPlan, other: RobotPlan, reach: float, until: f
 
 
 def _gap(ego: RobotPlan, other: RobotPlan, t: Array, s: Array) -> Array:
-    """Distances (m, n) [m] between ego's centre at s (m,) and the other's at t (n,)."""
+    """Signed distances (m, n) [m] between what planning takes for the cores: ego's at s (m,), the other's at t (n,)."""
     here, there = ego.path.point(s), other.path.point(other.profile.state(t)[:, 0])
-    return np.hypot(here[:, None, 0] - there[:, 0], here[:, None, 1] - there[:, 1])
+    core = conflict_core(ego.robot.footprint.core, other.robot.footprint.core)
+    return _signed(here[:, None, 0] - there[:, 0], here[:, None, 1] - there[:, 1], core)
+
+
+def _signed(x: Array, y: Array, core: Core) -> Array:
+    """Signed distances [m] of places x, y from a convex polygon, negative inside, or from a point."""
+    if len(core) == 1:
+        return np.hypot(x - core[0][0], y - core[0][1])
+    deepest, nearest = np.full(x.shape, -np.inf), np.full(x.shape, np.inf)
+    for (ax, ay), (bx, by) in pairwise([*core, core[0]]):
+        length = np.hypot(bx - ax, by - ay)
+        ux, uy = (bx - ax) / length, (by - ay) / length
+        aside, along = (x - ax) * uy - (y - ay) * ux, (x - ax) * ux + (y - ay) * uy
+        deepest = np.maximum(deepest, aside)
+        nearest = np.minimum(nearest, np.hypot(aside, along - np.clip(along, 0.0, length)))
+    return np.where(deepest < 0, deepest, nearest)
 
 
 def _widened(values: Array, chosen: npt.NDArray[np.intp]) -> tuple[float, float]:

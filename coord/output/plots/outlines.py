@@ -1,15 +1,12 @@
-"""Shapes to draw: the line of a path, the band of floor a robot sweeps, the reach of obstacles."""
+"""Shapes to draw: the line of a path, arrowheads on it, the band of floor that a disc sweeps."""
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from coord.model.arrays import Array
-from coord.model.obstacle import Circle, Obstacle
 from coord.model.path import Path
 
 #: [rad] Bends are drawn as chords that turn by this much.
@@ -55,50 +52,3 @@ def arrowheads(way: Array, size: float, spacing: float) -> list[Array]:
             np.array([centre + size * ahead, centre - size * (ahead - aside) / 2, centre - size * (ahead + aside) / 2])
         )
     return heads
-
-
-class Field(NamedTuple):
-    """Distances over the floor: x (n,), y (m,), distance (m, n) [m]."""
-
-    x: Array
-    y: Array
-    distance: Array
-
-
-def distance_field(obstacles: tuple[Obstacle, ...], bounds: tuple[float, float, float, float], reach: float) -> Field:
-    """The distance to the nearest outline of an obstacle on a grid, right where it is below ``reach`` [m].
-
-    For drawing only: the line at a level of this field is the border of grown obstacles, united.
-    """
-    xmin, ymin, xmax, ymax = bounds
-    cell = max(xmax - xmin, ymax - ymin) / 700
-    x, y = np.arange(xmin, xmax + cell, cell), np.arange(ymin, ymax + cell, cell)
-    distance = np.full((len(y), len(x)), 2 * reach)
-    for obstacle in obstacles:
-        if isinstance(obstacle, Circle):
-            (cx, cy), r = obstacle.center, obstacle.radius
-            window = _window(x, y, (cx - r, cy - r, cx + r, cy + r), 2 * reach)
-            far = np.hypot(x[window[1]] - cx, (y[window[0]] - cy)[:, None]) - r
-            distance[window] = np.minimum(distance[window], far)
-            continue
-        for ring in obstacle.rings:
-            for a, b in pairwise([*ring.tolist(), ring[0].tolist()]):
-                _lower(distance, x, y, a, b, 2 * reach)
-    return Field(x, y, distance)
-
-
-def _lower(distance: Array, x: Array, y: Array, a: list[float], b: list[float], margin: float) -> None:
-    """Lower the field to the distance from the edge a-b, near it."""
-    (ax, ay), (bx, by) = a, b
-    window = _window(x, y, (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)), margin)
-    u, v = x[window[1]] - ax, (y[window[0]] - ay)[:, None]
-    dx, dy = bx - ax, by - ay
-    squared = dx * dx + dy * dy
-    along = np.clip((u * dx + v * dy) / squared, 0.0, 1.0) if squared else np.zeros_like(u + v)
-    distance[window] = np.minimum(distance[window], np.hypot(u - along * dx, v - along * dy))
-
-
-def _window(x: Array, y: Array, box: tuple[float, float, float, float], margin: float) -> tuple[slice, slice]:
-    columns = np.searchsorted(x, [box[0] - margin, box[2] + margin])
-    rows = np.searchsorted(y, [box[1] - margin, box[3] + margin])
-    return slice(int(rows[0]), int(rows[1])), slice(int(columns[0]), int(columns[1]))

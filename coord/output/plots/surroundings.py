@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import astuple
+from typing import Any
+
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 
+from coord.geometry.shapes import grown_outlines
 from coord.model.obstacle import Circle, Obstacle
 from coord.model.problem import Problem
-from coord.output.plots.outlines import distance_field
+from coord.output.plots.footprints import compound, extents, words
 from coord.output.plots.style import GREY, INK, OBSTACLE
 
 
@@ -25,20 +28,18 @@ def draw_surroundings(ax: Axes, problem: Problem) -> list[Artist]:
     handles: list[Artist] = [Line2D([], [], color=INK, lw=1.6, label="edge of the floor")]
     if problem.obstacles:
         handles.append(Patch(facecolor=OBSTACLE, edgecolor=INK, label="obstacle"))
-    radii = sorted({robot.footprint.radius for robot in problem.robots})
-    for radius, style in zip(dict.fromkeys([radii[0], radii[-1]]), ("--", ":"), strict=False):
-        reach = radius + problem.workspace.clearance
+    shapes = sorted({robot.footprint for robot in problem.robots}, key=astuple)
+    clearance = problem.workspace.clearance
+    for shape, style in zip(dict.fromkeys([shapes[0], shapes[-1]]), ("--", ":"), strict=False):
+        # below the obstacles, which hide what lies inside others
+        pen: dict[str, Any] = {"fill": False, "ec": GREY, "lw": 0.8, "ls": style, "zorder": 2.5}
         if problem.obstacles:
-            field = distance_field(problem.obstacles, bounds, reach)
-            # below the obstacles, which hide the same line on their inside
-            ax.contour(
-                field.x, field.y, field.distance, [reach], colors=GREY, linewidths=0.8, linestyles=style, zorder=2.5
-            )
-        inset = Rectangle((xmin + reach, ymin + reach), xmax - xmin - 2 * reach, ymax - ymin - 2 * reach)
-        inset.set(fill=False, ec=GREY, lw=0.8, ls=style, zorder=2.5)
-        ax.add_patch(inset)
-        clearance = f" + clearance {problem.workspace.clearance:g} m" if problem.workspace.clearance else ""
-        label = f"no centre comes nearer\n(radius {radius:g} m{clearance})"
+            rings = grown_outlines(problem.obstacles, shape.core, shape.margin + clearance)
+            ax.add_patch(PathPatch(compound(rings), clip_path=ax.patch, **pen))
+        left, down, right, up = (reach + clearance for reach in extents(shape))
+        ax.add_patch(Rectangle((xmin + left, ymin + down), xmax - xmin - left - right, ymax - ymin - down - up, **pen))
+        room = words(shape) + (f" + clearance {clearance:g} m" if clearance else "")
+        label = f"no centre comes nearer\n({room.rstrip(',')})"
         handles.append(Line2D([], [], color=GREY, lw=0.8, ls=style, label=label))
     return handles
 
@@ -47,5 +48,4 @@ def outline(obstacle: Obstacle) -> Outline:
     """An obstacle as matplotlib draws it."""
     if isinstance(obstacle, Circle):
         return Outline.circle(obstacle.center, obstacle.radius)
-    rings = [Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in obstacle.rings]
-    return Outline.make_compound_path(*rings)
+    return compound(obstacle.rings)

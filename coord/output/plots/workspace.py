@@ -8,20 +8,20 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PatchCollection, PolyCollection
+from matplotlib.collections import LineCollection, PatchCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle as Disc
 from matplotlib.patches import Patch
 
 from coord.model.arrays import Array
-from coord.model.path import Path
+from coord.model.path import Path, straight
 from coord.model.problem import Problem
 from coord.model.result import Diagnosis, Plan
+from coord.output.plots.footprints import drawn, swept
 from coord.output.plots.giving_way import GivesWay, giving_way
 from coord.output.plots.lanes import side_by_side
 from coord.output.plots.names import write_names
-from coord.output.plots.outlines import arrowheads, band, line
+from coord.output.plots.outlines import arrowheads, line
 from coord.output.plots.style import ALARM, GREY, colour, dashes, figure_of, find, halo, new_figure, shown
 from coord.output.plots.surroundings import draw_surroundings
 
@@ -55,7 +55,7 @@ def workspace(plan: Plan, robot: str | None = None, ax: Axes | None = None) -> F
     paths = [part.path for part in plan.robots]
     marks = [mark for mark in giving_way(plan) if robot in (None, mark.robot.robot.name)]
     handles = draw_surroundings(ax, problem)
-    handles += [*_draw_paths(ax, problem, paths, strength), *_draw_ends(ax, problem, strength)]
+    handles += [*_draw_paths(ax, problem, paths, strength), *_draw_ends(ax, problem, _headings(paths), strength)]
     handles += _draw_marks(ax, marks, names)
     count, name = len(names), shown(problem.name, 60) or "The floor"
     title = f"{name}: where {'1 robot drives' if count == 1 else f'{count} robots drive'}, seen from above"
@@ -72,7 +72,8 @@ def floor(problem: Problem, diagnoses: Sequence[Diagnosis] = (), ax: Axes | None
     flights = [np.array([robot.start, robot.goal]) for robot in problem.robots]
     colours = [colour(k) for k in range(len(flights))]
     ax.add_collection(LineCollection(flights, colors=colours, linewidths=0.9, linestyles=":", zorder=4), autolim=False)
-    handles = [*draw_surroundings(ax, problem), *_draw_ends(ax, problem, strength)]
+    headings = _headings([straight(robot.start, robot.goal) for robot in problem.robots])
+    handles = [*draw_surroundings(ax, problem), *_draw_ends(ax, problem, headings, strength)]
     handles.append(Line2D([], [], color=GREY, lw=0.9, ls=":", label="from start to goal, not a path"))
     marks = [(diagnosis.place, diagnosis.code) for diagnosis in diagnoses if diagnosis.place is not None]
     for (x, y), _ in marks:
@@ -119,8 +120,8 @@ def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[fl
     metre, count = _point(problem), len(paths)
     colours = [(colour(k), strength[k]) for k in range(count)]
     fills = [(colour(k), 0.14 * strength[k]) for k in range(count)]
-    bands = [band(path, robot.footprint.radius) for path, robot in zip(paths, problem.robots, strict=True)]
-    ax.add_collection(PolyCollection(bands, facecolors=fills, edgecolors="none", zorder=2), autolim=False)
+    bands = [swept(path, robot.footprint) for path, robot in zip(paths, problem.robots, strict=True)]
+    ax.add_collection(PathCollection(bands, facecolors=fills, edgecolors="none", zorder=2), autolim=False)
     lines: list[Array] = [line(path)[:, :2] for path in paths]
     lanes = side_by_side(paths, _LANE * metre) if count <= MOST_NAMES else lines
     shared = any(len(way) != len(lane) for way, lane in zip(lines, lanes, strict=True))
@@ -142,12 +143,18 @@ def _draw_paths(ax: Axes, problem: Problem, paths: list[Path], strength: list[fl
     ]
 
 
-def _draw_ends(ax: Axes, problem: Problem, strength: list[float]) -> list[Artist]:
-    """Starts as discs, and goals as rings with a white border, so that a ring is seen on a disc too."""
+def _draw_ends(
+    ax: Axes, problem: Problem, headings: Sequence[tuple[float, float]], strength: list[float]
+) -> list[Artist]:
+    """Starts as filled footprints, and goals as rings with a white border, so that a ring is seen on a start too.
+
+    ``headings`` [rad] : at the start and at the goal, for footprints that turn.
+    """
     robots, point = problem.robots, _point(problem)
     colours = [(colour(k), strength[k]) for k in range(len(robots))]
-    starts = [Disc(robot.start, robot.footprint.radius) for robot in robots]
-    goals = [Disc(robot.goal, robot.footprint.radius) for robot in robots]
+    turned = list(zip(robots, headings, strict=True))
+    starts = [drawn(robot.footprint, robot.start, first) for robot, (first, _) in turned]
+    goals = [drawn(robot.footprint, robot.goal, last) for robot, (_, last) in turned]
     widths = [min(2.0, 0.4 * robot.footprint.radius / point) for robot in robots]
     discs = PatchCollection(starts, facecolors=colours, edgecolors="white", linewidths=0.6, zorder=6)
     borders = PatchCollection(goals, facecolors="none", edgecolors="white", linewidths=[2.2 * w for w in widths])
@@ -155,10 +162,20 @@ def _draw_ends(ax: Axes, problem: Problem, strength: list[float]) -> list[Artist
     borders.set(zorder=6.9, alpha=0.9)
     for collection in (discs, borders, rings):
         ax.add_collection(collection, autolim=False)
+    style: dict[str, Any] = {
+        "ls": "none",
+        "marker": "s" if all(one.footprint.vertices for one in robots) else "o",
+        "ms": 10,
+    }
     return [
-        Line2D([], [], ls="none", marker="o", ms=10, mfc=GREY, mec="white", label="start, with the robot's name"),
-        Line2D([], [], ls="none", marker="o", ms=10, mfc="none", mec=GREY, mew=2, label="goal, its name in grey"),
+        Line2D([], [], mfc=GREY, mec="white", label="start, with the robot's name", **style),
+        Line2D([], [], mfc="none", mec=GREY, mew=2, label="goal, its name in grey", **style),
     ]
+
+
+def _headings(paths: Sequence[Path]) -> list[tuple[float, float]]:
+    """The headings [rad] in which paths begin and end."""
+    return [(float(path.poses[0, 2]), float(path.poses[-1, 2])) for path in paths]
 
 
 def _draw_marks(ax: Axes, marks: list[GivesWay], names: list[str]) -> list[Artist]:

@@ -1,8 +1,7 @@
-"""Which obstacles hang together for a robot, and thin barriers that force its path to one side of them."""
+"""Which obstacles hang together for a robot, where they stand on a line, and what they are called."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,9 +10,8 @@ import shapely
 
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import core
-from coord.model.arrays import Array, Point
+from coord.model.arrays import Point
 from coord.model.obstacle import Obstacle
-from coord.tolerances import BARRIER
 
 
 def clusters(grown: Grown) -> npt.NDArray[np.intp]:
@@ -71,16 +69,3 @@ def names_of(obstacles: Sequence[Obstacle], grown: Grown, parts: npt.NDArray[np.
     tree = shapely.STRtree(np.array([core(obstacle)[0] for obstacle in obstacles], dtype=object))
     touched = np.unique(tree.query(grown.parts[parts], predicate="intersects")[1])
     return [obstacles[k].name for k in touched.tolist()]
-
-
-def with_barriers(grown: Grown, segments: Array) -> Grown:
-    """The floor with thin walls along segments (n, 4) [m], whose ends nobody can go round."""
-    walls = shapely.linestrings(segments.reshape(-1, 2, 2))
-    numbers = len(grown.parts) + np.arange(len(segments))
-    return dataclasses.replace(
-        grown,
-        parts=np.append(grown.parts, walls),
-        rho=np.append(grown.rho, np.full(len(segments), BARRIER)),
-        edges=np.vstack([grown.edges, segments]),
-        edge_parts=np.append(grown.edge_parts, numbers),
-    )
