@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from coord.errors import InvalidValueError
 
-_CHOICES = {
+#: Shapes of a path, the default first.
+SHAPES: Final = ("fitted", "exponential", "taut", "follow")
+
+_CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "method": ("velocity",),
-    "shape": ("fitted", "exponential", "taut", "follow"),
+    "shape": SHAPES,
     "order": ("priority",),
     "profile": ("fastest",),
 }

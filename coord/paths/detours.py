@@ -22,8 +22,8 @@ from coord.paths.bends import AIR
 #: [rad] A way that turns this far away from the straight line has no single height over it.
 _STEEPEST = math.pi / 2 - 0.02
 
-#: Samples of an envelope, and halvings to find where it begins.
-_SAMPLES, _HALVINGS = 400, 60
+#: Samples of an envelope; and to find where it begins, rounds of so many cuts: 32^10 places are all that doubles tell.
+_SAMPLES, _CUTS, _ROUNDS = 400, 32, 10
 
 #: [rad] Bends of the guiding path are looked at this often.
 _LOOK = 0.02
@@ -194,10 +194,8 @@ def envelope(x: Array, a: Array, b: Array, rho: Array) -> Array:
 
 def _border(outside: float, inside: float, a: Array, b: Array, rho: Array) -> float:
     """Where between two x the envelope rises above the line."""
-    for _ in range(_HALVINGS):
-        middle = (outside + inside) / 2
-        if envelope(np.array([middle]), a, b, rho)[0] > 0:
-            inside = middle
-        else:
-            outside = middle
+    for _ in range(_ROUNDS):
+        x = np.linspace(outside, inside, _CUTS + 1)
+        first = int(np.argmax(envelope(x[1:], a, b, rho) > 0))
+        outside, inside = float(x[first]), float(x[first + 1])
     return inside

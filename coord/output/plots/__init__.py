@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from coord.errors import InvalidValueError
 from coord.model.result import Plan, Result
+from coord.output.plots.as_planned import longest_detour, route_of
+from coord.output.plots.path import path
 from coord.output.plots.profiles import profiles
 from coord.output.plots.st import st
-from coord.output.plots.style import png
+from coord.output.plots.style import find, png
 from coord.output.plots.workspace import floor, workspace
 
-__all__ = ["KINDS", "draw", "draw_failure", "floor", "profiles", "st", "workspace"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-#: What there is to draw.
+__all__ = ["KINDS", "draw", "draw_failure", "floor", "path", "profiles", "st", "workspace"]
+
+#: What there is to draw of a plan as a whole; "path" is drawn of one robot.
 KINDS: Final = ("workspace", "profiles", "st")
 
 
@@ -23,7 +28,7 @@ def draw(plan: Plan, what: str, robot: str | None = None) -> bytes:
     Parameters
     ----------
     what : "workspace" (where everybody drives), "profiles" (speed, acceleration and jerk over time) or
-        "st" (one robot's way between the robots planned earlier).
+        "st" (one robot's way between the robots planned earlier), or "path" (one robot's path, and the other side).
     robot : the name of the robot to show; without it each picture chooses and says so.
 
     Raises
@@ -31,10 +36,15 @@ def draw(plan: Plan, what: str, robot: str | None = None) -> bytes:
     InvalidValueError
         When no robot has this name, or ``what`` is none of the kinds.
     """
-    kinds = {"workspace": workspace, "profiles": profiles, "st": st}
+    kinds = {"workspace": workspace, "profiles": profiles, "st": st, "path": _path}
     if what not in kinds:
-        raise InvalidValueError([("what", f'there is no picture "{what}"; there are {", ".join(KINDS)}')])
+        raise InvalidValueError([("what", f'there is no picture "{what}"; there are {", ".join(kinds)}')])
     return png(lambda: kinds[what](plan, robot))
+
+
+def _path(plan: Plan, robot: str | None) -> Figure:
+    name = find(plan, robot or longest_detour(plan)).robot.name
+    return path(plan, name, route_of(plan, name))
 
 
 def draw_failure(result: Result) -> bytes:

@@ -1,0 +1,146 @@
+"""``coord plan``: read, plan, write, report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from coord.cli.app import (
+    NO_PLAN,
+    NOT_CERTIFIED,
+    OK,
+    Json,
+    ProblemFile,
+    command,
+    note,
+    print_json,
+    print_table,
+    say,
+)
+from coord.errors import BadFileError, Fault, InvalidValueError
+
+if TYPE_CHECKING:
+    from coord.model.options import Options
+    from coord.model.problem import Problem
+    from coord.model.result import Result
+
+
+@command()
+def plan(
+    problem: ProblemFile,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="OUTDIR", help="Where results go; plans/<name of PROBLEM>/.")
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Who gives way, and how. velocity: the later one, by its speed.")
+    ] = None,
+    shape: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="How paths bend. fitted: as wide as pays (default); exponential: least-squares curves; "
+            "taut: shortest, lines and arcs; follow: along the obstacles' edges.",
+        ),
+    ] = None,
+    order: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Who is planned first. priority: yours, then who needs longest alone."),
+    ] = None,
+    profile: Annotated[
+        str | None, typer.Option(metavar="NAME", help="How robots drive. fastest: each arrives as early as it can.")
+    ] = None,
+    time_limit: Annotated[float | None, typer.Option(metavar="S", help="Stop searching after this long [s].")] = None,
+    gap_target: Annotated[float | None, typer.Option(metavar="G", help="Not supported yet.")] = None,
+    seed: Annotated[int | None, typer.Option(metavar="N", help="For everything drawn at random.")] = None,
+    plots: Annotated[
+        bool | None,
+        typer.Option(
+            "--plots/--no-plots", help="Also draw workspace.png, profiles.png, st.png; with no plan the first."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Plan the robots of PROBLEM.
+
+    Writes plan.json, certified, or diagnosis.json when there is no plan.
+    Options that are not given are those of the problem's [plan] table.
+    """
+    started = perf_counter()
+    from coord.output import files, summary
+    from coord.output.progress import progress
+    from coord.plan import plan as make_plan
+    from coord.reading.problem_file import read_problem
+
+    read = read_problem(problem)
+    options = _options(
+        problem,
+        read,
+        method=method,
+        shape=shape,
+        order=order,
+        profile=profile,
+        time_limit=time_limit,
+        gap_target=gap_target,
+        seed=seed,
+    )
+    folder = out if out is not None else Path("plans") / problem.stem
+    files.prepare(folder)
+    with progress() as show:
+        result = make_plan(read, options, show)
+    written = [files.save(folder, result)]
+    found = summary.certified_plan(result)
+    if read.options.get("plots", False) if plots is None else plots:
+        written += _draw(folder, result)
+    seconds = perf_counter() - started
+    if as_json:
+        print_json(summary.record(result, seconds))
+    else:
+        if result.diagnoses:
+            note(summary.paragraphs(result.diagnoses))
+        if found is not None:
+            print_table(summary.table(result, found))
+            say("\n".join(f"written: {path}" for path in written))
+        else:
+            kind = "certified plan" if result.plan else "plan"
+            note(f"There is no {kind}; the reasons are in {' and '.join(map(str, written))}")
+    return NO_PLAN if result.plan is None else OK if found is not None else NOT_CERTIFIED
+
+
+def _draw(folder: Path, result: Result) -> list[Path]:
+    """Write the pictures of a plan, or that of the floor where there is none; of a refused plan there is no picture."""
+    from coord.output import files
+    from coord.output.plots import KINDS, draw, draw_failure
+
+    pictures: dict[str, bytes] = {}
+    if result.plan is None:
+        pictures["workspace"] = draw_failure(result)
+    elif result.certified:
+        pictures = {kind: draw(result.plan, kind) for kind in KINDS}
+    for kind, data in pictures.items():
+        files.write(folder / f"{kind}.png", data)
+    return [folder / f"{kind}.png" for kind in pictures]
+
+
+def _options(file: Path, problem: Problem, **flags: object) -> Options:
+    """The options of the file, overruled by the flags that were given; faults say which of the two is wrong."""
+    from coord.model.options import Options
+
+    given = {name: value for name, value in flags.items() if value is not None}
+    table = {name: value for name, value in problem.options.items() if name != "plots"}
+    unknown = table.keys() - flags.keys()
+    if unknown:
+        raise BadFileError(Fault(str(file), None, "[plan]", f"unknown option {name}") for name in sorted(unknown))
+    merged: Mapping[str, Any] = {**table, **given}
+    try:
+        return Options(**merged)
+    except InvalidValueError as error:
+        raise BadFileError(
+            Fault("coord", None, f"--{name.replace('_', '-')}", text)
+            if name in given
+            else Fault(str(file), None, "[plan]", text)
+            for name, text in error.faults
+        ) from error

@@ -1,0 +1,60 @@
+"""Commands about problems: ``coord import``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coord.cli.app import OK, command, note
+
+
+@command("import")
+def import_(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="A .scen or .map (MovingAI), a ROS map or dynobench .yaml, an image, .geojson or .wkt.",
+        ),
+    ],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="PROBLEM", help="The problem file; <name of FILE>.toml here.")
+    ] = None,
+    map_: Annotated[
+        Path | None, typer.Option("--map", metavar="MAP", help="Of a scenario: the map, where it is not beside it.")
+    ] = None,
+    robots: Annotated[int | None, typer.Option(metavar="N", help="Of a scenario: so many robots (10).")] = None,
+    resolution: Annotated[float | None, typer.Option(metavar="M", help="Of images and .map: metres a cell.")] = None,
+    occupied_below: Annotated[
+        float | None,
+        typer.Option(metavar="SHARE", help="Of images: cells darker than this share of white are occupied."),
+    ] = None,
+    unknown: Annotated[str | None, typer.Option(metavar="WHAT", help="Of ROS maps: occupied or free.")] = None,
+    radius: Annotated[float | None, typer.Option(metavar="M", help="Of the robots' discs.")] = None,
+    simplify: Annotated[
+        float, typer.Option(metavar="M", help="Of maps: polygons that are larger by this much at most, not the map.")
+    ] = 0.0,
+    metres: Annotated[bool, typer.Option("--metres", help="Of GeoJSON: coordinates are metres, not degrees.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace a problem file that is there.")] = False,
+) -> int:
+    """Turn a file of another program into a problem file that a person can read and edit."""
+    from coord.importing.choose import write_import
+    from coord.importing.values import ImportOptions
+
+    target = out if out is not None else Path(f"{file.stem}.toml")
+    options = ImportOptions(
+        map=map_,
+        robots=robots,
+        resolution=resolution,
+        occupied_below=occupied_below,
+        unknown=unknown,
+        radius=radius,
+        simplify=simplify,
+        metres=metres,
+        force=force,
+    )
+    remarks = write_import(file, target, options)
+    note("\n".join([*remarks, f"written: {target}"]))
+    return OK
