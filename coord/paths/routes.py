@@ -121,7 +121,7 @@ class _Router:
         blockers = self.ways.blockers()
         base = self._candidate(passed(legs, blockers), legs)
         if not blockers:
-            shape = self.shape if base.bones.turns else "straight"
+            shape = _used(self.shape, base.shaped) if base.bones.turns else "straight"
             return Route(base.shaped.path, base.alone, shape, "", base.bones.length, (), *_extras(base))
         return self._on_a_side(base, blockers)
 
@@ -151,7 +151,8 @@ class _Router:
             best = _quickest([best, *self._changed(base, blockers, best)])
         side_name = NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both"
         path, extras = best.shaped.path, _extras(best)
-        return Route(path, best.alone, self.shape, side_name, best.bones.length, tuple(ways), *extras)
+        shape = _used(self.shape, best.shaped)
+        return Route(path, best.alone, shape, side_name, best.bones.length, tuple(ways), *extras)
 
     def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: _Candidate) -> list[_Candidate]:
         """The shortest ways that pass one blocker on the other side than the shortest, if they might be quicker."""
@@ -175,7 +176,7 @@ class _Router:
 
     def _candidate(self, sides: tuple[int, ...], legs: Sequence[Skeleton]) -> _Candidate:
         limits, bones = self.robot.limits, joined(legs)
-        shaped = _shaped(self.shape, bones, limits, self.floor)
+        shaped = _shaped(self.shape, bones, limits, self.floor, is_direct=len(self.places) == 2)
         if shaped is None:
             raise NoPlanError([no_way.no_room_to_turn(self.robot)])
         return _Candidate(sides, legs, bones, shaped, fastest(shaped.path, limits))
@@ -205,7 +206,7 @@ class _Router:
         same = [way.side for way in ways if way.length == chosen.path.length]
         side = asked or (same[0] if same else "both")
         alone = fastest(chosen.path, limits)
-        return Route(chosen.path, alone, "follow", side, shortest, ways, chosen.fits, chosen.remarks)
+        return Route(chosen.path, alone, _used("follow", chosen), side, shortest, ways, chosen.fits, chosen.remarks)
 
     def _given(self) -> Route:
         """The polyline of the problem, with its corners rounded, if it keeps the distance."""
@@ -223,15 +224,17 @@ class _Router:
         return no_way.nowhere(self.problem, self.robot, self.ways)
 
 
-def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor) -> Shaped | None:
+def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor, *, is_direct: bool) -> Shaped | None:
     """A skeleton as a path; None where its turns find no room, which only places to pass bring about."""
-    if shape == "exponential":
+    if shape == "exponential" and is_direct:
         return exponential(bones, limits, floor)
     path = taut(bones, floor) if shape == "taut" else fitted(bones, limits, floor)
-    remarks: tuple[str, ...] = ()
-    if shape == "follow":
-        remarks = ("Fitted turns instead of following edges: the robot has places to pass.",)
-    return None if path is None else Shaped(path, remarks=remarks)
+    if path is None:
+        return None
+    odd = shape in ("exponential", "follow")
+    return Shaped(
+        path, remarks=(f'Fitted turns instead of shape "{shape}": the robot has places to pass.',) if odd else ()
+    )
 
 
 def _quickest(candidates: Sequence[_Candidate]) -> _Candidate:
@@ -241,6 +244,13 @@ def _quickest(candidates: Sequence[_Candidate]) -> _Candidate:
         if one.alone.arrival < best.alone.arrival * (1 - _QUICKER):
             best = one
     return best
+
+
+def _used(shape: str, shaped: Shaped) -> str:
+    """The shape that a path has, where another was asked for that did not apply."""
+    if shape == "follow" and shaped.remarks:
+        return "taut"
+    return "fitted" if shape == "exponential" and not shaped.fits else shape
 
 
 def _extras(one: _Candidate) -> tuple[tuple[Fit, ...], tuple[str, ...]]:

@@ -1,0 +1,294 @@
+"""The story before planning: every robot's way and what the other side would cost, who meets whom, who goes first.
+
+The stages are those of ``coord.plan``, in the same order, up to the first velocity profile. Where one of them
+finds that there can be no plan, the story goes on as far as it can and carries the diagnosis.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from bisect import bisect_left, insort
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from coord.conflicts.candidates import candidate_pairs
+from coord.conflicts.chords import Chords, chords
+from coord.conflicts.core import conflict_core
+from coord.conflicts.region import ConflictRegion, conflict_regions
+from coord.coordination import diagnose
+from coord.coordination.blocking import blocking_arcs
+from coord.coordination.order import shortest_cycle, topological_order, urgency
+from coord.coordination.prioritised import blocked_places
+from coord.errors import InvalidValueError, NoPlanError
+from coord.geometry.clusters import names_of
+from coord.geometry.growth import Grown, grow
+from coord.model.arrays import Point
+from coord.model.footprint import Footprint
+from coord.model.options import Options
+from coord.model.path import Path
+from coord.model.problem import Problem
+from coord.model.result import BlockingArc, Diagnosis
+from coord.model.robot import Robot
+from coord.model.route import Route
+from coord.paths.routes import find_routes
+from coord.paths.skeleton import search_floor
+
+#: [m] Places of a meeting whose distances differ by less are equally close: the one in the middle is told.
+_AS_CLOSE = 0.01
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trip:
+    """What one robot does alone.
+
+    ``route`` : None where it has no way, and ``diagnosis`` says why; ``past`` : names of the obstacles on its
+    straight line, leg by leg where it has places to pass, empty where nothing stands there.
+    """
+
+    robot: Robot
+    route: Route | None
+    past: tuple[str, ...] = ()
+    diagnosis: Diagnosis | None = None
+
+    @property
+    def solo_arrival(self) -> float | None:
+        """Arrival [s] with nobody else on the floor, release included; None without a way."""
+        return None if self.route is None else self.route.alone.shifted(self.robot.release).arrival
+
+
+@dataclass(frozen=True, slots=True)
+class Encounter:
+    """Two robots whose paths come nearer than they may: one connected part of their collision region.
+
+    ``place`` [m] : in the middle between them where they would be closest; ``stretches`` : from which to which arc
+    length [m] of the first and of the second robot's path they can be too near.
+    """
+
+    robots: tuple[str, str]
+    place: Point
+    stretches: tuple[tuple[float, float], tuple[float, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """``robot`` goes before ``before`` and ``others`` more, all of them more urgent, because of a chain of arcs.
+
+    The chain leads from ``robot`` to ``before``, the most urgent of them; the others go after that one by their
+    own urgency, so they need no arc.
+    """
+
+    robot: str
+    before: str
+    others: int
+    chain: tuple[BlockingArc, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Rerouted:
+    """A robot that goes round places where others rest, and what its way takes then: length [m], time [s]."""
+
+    robot: str
+    past: tuple[str, ...]
+    length: float
+    time: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Explanation:
+    """All that is known before the first velocity profile is sought.
+
+    Parameters
+    ----------
+    trips : in the order of the problem; ``shape`` : the one asked for.
+    encounters, arcs : of the robots that have a way.
+    urgent : names, by priority, then the longest alone first, then as given; robots without a way are left out.
+    order : names, first planned first; None where there is none, and ``diagnoses`` say why.
+    deviations : one for each robot that goes before a more urgent one.
+    """
+
+    problem: Problem
+    shape: str
+    trips: tuple[Trip, ...]
+    encounters: tuple[Encounter, ...]
+    arcs: tuple[BlockingArc, ...]
+    urgent: tuple[str, ...]
+    order: tuple[str, ...] | None
+    deviations: tuple[Deviation, ...] = ()
+    rerouted: tuple[Rerouted, ...] = ()
+    diagnoses: tuple[Diagnosis, ...] = ()
+
+
+def explain(
+    problem: Problem,
+    options: Options | None = None,
+    progress: Callable[[str, int, int], None] = lambda stage, done, total: None,
+) -> Explanation:
+    """Tell how a plan would come about; robots without a way and cycles are part of the story, not errors.
+
+    Parameters
+    ----------
+    options : shape and order are used; the others concern the plan itself.
+    progress : called with a stage's name, how much of it is done, and how much there is.
+
+    Raises
+    ------
+    InvalidValueError
+        When the problem asks for something that is not supported yet.
+    """
+    options = options or Options()
+    if problem.workspace.after_arrival != "stay":
+        text = f'after_arrival "{problem.workspace.after_arrival}" is not supported yet'
+        raise InvalidValueError([("after_arrival", text)])
+    trips = _trips(problem, options.shape, lambda done: progress("paths", done, len(problem.robots)))
+    lanes = [_Lane(trip.robot, trip.route.path, chords(trip.route.path)) for trip in trips if trip.route is not None]
+    robots, clearance = [lane.robot for lane in lanes], problem.workspace.clearance
+    names = [robot.name for robot in robots]
+
+    reaches = [robot.footprint.radius + clearance / 2 for robot in robots]
+    pairs = candidate_pairs([lane.chords for lane in lanes], reaches) if lanes else []
+    arcs = blocking_arcs(robots, [lane.path for lane in lanes], pairs, clearance)
+    blocked = blocked_places(arcs, names)
+    encounters: list[Encounter] = []
+    for done, pair in enumerate(pairs, 1):
+        encounters += _encounters(lanes, pair, blocked, clearance)
+        progress("meetings", done, len(pairs))
+
+    arrivals = [trip.solo_arrival for trip in trips if trip.solo_arrival is not None]
+    urgent = urgency([robot.priority for robot in robots], arrivals)
+    order = topological_order(urgent, names, arcs)
+    lost = [trip.diagnosis for trip in trips if trip.diagnosis is not None]
+    ring = [diagnose.cycle(shortest_cycle(names, arcs))] if order is None else []
+    ordered = None if lost or order is None else tuple(names[i] for i in order)
+    wished = tuple(names[i] for i in urgent)
+    return Explanation(
+        problem,
+        options.shape,
+        tuple(trips),
+        tuple(encounters),
+        tuple(arcs),
+        wished,
+        ordered,
+        () if ordered is None else _deviations(ordered, wished, arcs),
+        diagnoses=(*lost, *ring),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Lane:
+    """A robot on its path."""
+
+    robot: Robot
+    path: Path
+    chords: Chords
+
+
+def _trips(problem: Problem, shape: str, done: Callable[[int], None]) -> list[Trip]:
+    """What every robot does alone; the first search ends with all that have no way, a second one leaves them out."""
+    lost: dict[str, Diagnosis] = {}
+    try:
+        found = find_routes(problem, shape, done, thorough=True)
+    except NoPlanError as failure:
+        lost = {name: diagnosis for diagnosis in failure.diagnoses for name in diagnosis.robots}
+        others = tuple(robot for robot in problem.robots if robot.name not in lost)
+        found = find_routes(dataclasses.replace(problem, robots=others), shape, done, thorough=True) if others else []
+    routes = iter(found)
+    grounds: dict[Footprint, Grown] = {}
+    trips = []
+    for robot in problem.robots:
+        if robot.name in lost:
+            trips.append(Trip(robot, None, diagnosis=lost[robot.name]))
+            continue
+        route = next(routes)
+        trips.append(Trip(robot, route, _in_the_way(problem, robot, grounds) if route.side else ()))
+    return trips
+
+
+def _in_the_way(problem: Problem, robot: Robot, grounds: dict[Footprint, Grown]) -> tuple[str, ...]:
+    """Names of the obstacles on a robot's straight lines from place to place; ``grounds`` remembers grown ones."""
+    workspace, shape = problem.workspace, robot.footprint
+    if shape not in grounds:
+        grounds[shape] = grow(problem.obstacles, shape, workspace.clearance, workspace.bounds)
+    places = (robot.start, *robot.via, robot.goal)
+    segments = np.array([(*a, *b) for a, b in pairwise(places) if a != b])
+    hit = search_floor(grounds[shape], places).hit_parts(segments)[:, 1]
+    return tuple(names_of(problem.obstacles, grounds[shape], np.unique(hit)))
+
+
+def _encounters(
+    lanes: Sequence[_Lane], pair: tuple[int, int], blocked: frozenset[tuple[int, int, str]], clearance: float
+) -> list[Encounter]:
+    """All places where a pair can be too near, in the order in which the first of them comes there."""
+    i, k = pair
+    ego, other = lanes[i], lanes[k]
+    shape, place = ego.robot.footprint, other.robot.footprint
+    regions = conflict_regions(
+        ego.chords,
+        other.chords,
+        shape.margin + place.margin + clearance,
+        conflict_core(shape.core, place.core),
+        start_free=(i, k, "start") not in blocked,
+        goal_free=(i, k, "goal") not in blocked,
+    )
+    return sorted((_encounter(ego, other, region) for region in regions), key=lambda one: one.stretches)
+
+
+def _encounter(ego: _Lane, other: _Lane, region: ConflictRegion) -> Encounter:
+    """A region of the coordination plane, told as a place on the floor and two stretches."""
+    sigma = (region.sigma[:-1] + region.sigma[1:]) / 2
+    s = np.clip((region.low.mean(axis=1) + region.high.mean(axis=1)) / 2, 0.0, ego.path.length)
+    at, beside = ego.path.point(s), other.path.point(sigma)
+    apart = np.hypot(*(at - beside).T)
+    close = np.flatnonzero(apart <= apart.min() + _AS_CLOSE)
+    x, y = (at[close[len(close) // 2]] + beside[close[len(close) // 2]]).tolist()
+    first, last = np.clip(region.s_range, 0.0, ego.path.length).tolist()
+    begin, end = np.clip(region.sigma[[0, -1]], 0.0, other.path.length).tolist()
+    return Encounter((ego.robot.name, other.robot.name), (x / 2, y / 2), ((first, last), (begin, end)))
+
+
+def _deviations(order: Sequence[str], urgent: Sequence[str], arcs: Sequence[BlockingArc]) -> tuple[Deviation, ...]:
+    """Who goes before somebody more urgent, each with the arcs that lead to the most urgent robot after it.
+
+    There is such a chain: built from the back, the order put that most urgent robot b behind robot a because a was
+    not free to go there, so a chain of arcs leads from a to a robot that was. That one goes after a and is at least
+    as urgent as b, so it is b.
+    """
+    rank = {name: position for position, name in enumerate(urgent)}
+    chains: dict[str, dict[str, BlockingArc]] = {}
+    later: list[int] = []
+    found = []
+    for name in reversed(order):
+        more_urgent = bisect_left(later, rank[name])
+        if more_urgent:
+            before = urgent[later[0]]
+            if before not in chains:
+                chains[before] = _towards(before, arcs)
+            chain = _chain(name, before, chains[before])
+            found.append(Deviation(name, before, more_urgent - 1, chain))
+        insort(later, rank[name])
+    return tuple(found[::-1])
+
+
+def _towards(name: str, arcs: Sequence[BlockingArc]) -> dict[str, BlockingArc]:
+    """For every robot from which a chain of arcs leads to this one, the first arc of a shortest chain."""
+    into: dict[str, list[BlockingArc]] = {}
+    for arc in arcs:
+        into.setdefault(arc.then, []).append(arc)
+    step: dict[str, BlockingArc] = {}
+    queue = deque([name])
+    while queue:
+        for arc in into.get(queue.popleft(), []):
+            if arc.first not in step:
+                step[arc.first] = arc
+                queue.append(arc.first)
+    return step
+
+
+def _chain(first: str, last: str, step: Mapping[str, BlockingArc]) -> tuple[BlockingArc, ...]:
+    arcs = [step[first]]
+    while arcs[-1].then != last:
+        arcs.append(step[arcs[-1].then])
+    return tuple(arcs)
