@@ -75,6 +75,7 @@ class _Borders:
 
     def lower_until_possible(self) -> bool:
         """Lower borders that cannot be reached, from the front, then those that cannot be left, from the back."""
+        self._lower_as_without_jerk()
         count = len(self.caps)
         for reached in (True, False):
             for m in range(count) if reached else reversed(range(count)):
@@ -86,6 +87,15 @@ class _Borders:
                     self.states[border] = (max(_BACK_OFF * speed, least), 0.0)
         self.times = [self.link(m, self.states[m], self.states[m + 1]) for m in range(count)]
         return not any(math.isinf(time) for time in self.times)
+
+    def _lower_as_without_jerk(self) -> None:
+        """Lower borders that are out of reach even without a jerk limit, which is known in closed form."""
+        speeds = [speed for speed, _ in self.states]
+        for m, length in enumerate(self.lengths):
+            speeds[m + 1] = min(speeds[m + 1], math.sqrt(speeds[m] ** 2 + 2 * self.limits.acceleration * length))
+        for m, length in reversed(list(enumerate(self.lengths))):
+            speeds[m] = min(speeds[m], math.sqrt(speeds[m + 1] ** 2 + 2 * self.limits.deceleration * length))
+        self.states = [(speed, 0.0) for speed in speeds]
 
     def improve(self) -> None:
         """Sweep over the borders until a sweep gains next to nothing."""

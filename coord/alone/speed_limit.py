@@ -51,17 +51,20 @@ def speed_limit_of(pieces: Iterable[tuple[float, float, float]], limits: Limits,
     """The caps along the pieces of a path: length [m], curvature [1/m] at the start and at the end of each.
 
     A clothoid is cut where its cap has changed by the factor ``cap_ratio``; within a cut the lowest cap holds.
+    Cuts of clothoids that differ by less than its root are one section: some curves have very many pieces.
     """
     ends: list[float] = []
     caps: list[float] = []
-    position = 0.0
+    position, highest = 0.0, 0.0  # the highest cap of the section if clothoids made it, else 0
     for length, k0, k1 in pieces:
         for cut, cap in _cuts(length, k0, k1, limits, cap_ratio):
-            if caps and caps[-1] == cap:
-                ends[-1] = position + cut
+            top = 0.0 if k0 == k1 or cap == limits.speed else max(cap, highest)
+            if caps and (caps[-1] == cap or (highest and top and top**2 < cap_ratio * min(cap, caps[-1]) ** 2)):
+                ends[-1], caps[-1], highest = position + cut, min(cap, caps[-1]), top
             else:
                 ends.append(position + cut)
                 caps.append(cap)
+                highest = 0.0 if top == 0.0 else cap
         position += length
     return SpeedLimit(frozen(ends), frozen(caps))
 

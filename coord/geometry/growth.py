@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from coord.errors import InvalidValueError
 from coord.geometry.shapes import Geometry, core
 from coord.model.arrays import Array
 from coord.model.footprint import Footprint
@@ -94,7 +95,13 @@ def grow(
     For a disc, and for a polygon that turns with the path, the cores are the obstacles and the radius is added
     to the distance. For a polygon K that keeps its heading they are Minkowski sums with -K: the places of its
     reference point at which it would touch the obstacle.
+
+    Raises
+    ------
+    InvalidValueError
+        When outlines cross themselves: problem files are checked for that, problems made by programs are not.
     """
+    _check_outlines(obstacles)
     K, reach = np.array(footprint.core), footprint.margin + clearance
     round_ones = [obstacle for obstacle in obstacles if isinstance(obstacle, Circle)]
     polygons = [_widened(core(obstacle)[0], K) for obstacle in obstacles if not isinstance(obstacle, Circle)]
@@ -114,6 +121,16 @@ def grow(
     box = (xmin - left + reach, ymin - lower + reach, xmax - right - reach, ymax - upper - reach)
     siblings = np.array(owners + list(range(len(owners), len(parts))), dtype=np.intp)
     return Grown(parts, rho, outlines.corners(), edges, edge_parts, _touching(parts, siblings), box)
+
+
+def _check_outlines(obstacles: Sequence[Obstacle]) -> None:
+    cores = np.array([core(obstacle)[0] for obstacle in obstacles], dtype=object)
+    faults = [
+        ("polygon", f'obstacle "{obstacles[k].name}": {shapely.is_valid_reason(cores[k])}; an outline must be simple')
+        for k in np.flatnonzero(~shapely.is_valid(cores)).tolist()
+    ]
+    if faults:
+        raise InvalidValueError(faults)
 
 
 def _widened(polygon: Geometry, K: Array) -> Geometry:

@@ -22,8 +22,8 @@ AIR = 2e-6
 #: [m] Change of an effective radius below which it has converged, for comparing and for good; rounds at most.
 _ROUGHLY, _CONVERGED, _MOST_ROUNDS = 1e-6, 1e-12, 100
 
-#: [rad] A turn this sharp is no turn round a corner any more.
-_SHARPEST = 3.1
+#: [rad] A turn this sharp is no turn round a corner any more; at a place to pass one may turn back, in a loop.
+_SHARPEST, _SHARPEST_AT_PLACE = 3.1, 4.5
 
 #: [m] Pieces shorter than this are left out.
 _SHORTEST = 1e-9
@@ -151,8 +151,10 @@ class Bends:
             self.lengths[k] = math.sqrt(square)
         for k in {k for line in lines for k in (line - 1, line) if 0 <= k < len(self.bends)}:
             turned = sides[k + 1] * (self.headings[k + 1] - self.headings[k])
-            self.angles[k] = (turned + math.pi) % (2 * math.pi) - math.pi
-            if not 0 < self.angles[k] < _SHARPEST:
+            sharpest = _SHARPEST if self._rho[k] > 0 else _SHARPEST_AT_PLACE
+            least = sharpest - 2 * math.pi
+            self.angles[k] = (turned - least) % (2 * math.pi) + least
+            if self.angles[k] <= 0:
                 self._is_drawn = False
                 return False
         return True
