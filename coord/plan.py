@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import chords
 from coord.coordination import diagnose
-from coord.coordination.blocking import blocking_arcs
-from coord.coordination.order import shortest_cycle, topological_order, urgency
-from coord.coordination.prioritised import Scene, blocked_places, plan_in_order
+from coord.coordination.blocking import arc_of, find_blocks
+from coord.coordination.order import topological_order, urgency
+from coord.coordination.prioritised import plan_in_order, scene_of
+from coord.coordination.records import plan_of, unopened
+from coord.coordination.rerouting import reroute
 from coord.errors import InvalidValueError, NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
-from coord.model.result import Clearance, Diagnosis, Plan, Result, RobotPlan
+from coord.model.result import Clearance, Diagnosis, Plan, Result
 from coord.output.plan_file import serialise
 from coord.paths.routes import find_routes
 from coord.timing.ego import ego
@@ -28,7 +29,8 @@ Progress = Callable[[str, int, int], None]
 def plan(problem: Problem, options: Options | None = None, progress: Progress | None = None) -> Result:
     """Plan the motion of all robots of a problem, and certify the plan.
 
-    First every robot gets a path, the shortest round the obstacles. Then the robots get their velocity
+    First every robot gets a path, the quickest round the obstacles; where robots on these paths would block each
+    other in a ring, some are sent round the places where others rest. Then the robots get their velocity
     profiles, one after the other in an order that respects who blocks whom, each the quickest that is found
     against those before it. The plan is written out and verified, by the independent checker, as the very
     bytes that are handed back.
@@ -65,47 +67,41 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
 
 
 def _planned(problem: Problem, options: Options, progress: Progress, time_is_up: Callable[[], bool]) -> Plan:
-    """The stages in order: paths, alone, conflicts, order, timing."""
-    robots, clearance = problem.robots, problem.workspace.clearance
+    """The stages in order: paths, who blocks whom, ways round, alone, order, timing."""
+    robots, clearance, total = problem.robots, problem.workspace.clearance, len(problem.robots)
     names = [robot.name for robot in robots]
-    routes = find_routes(problem, options.shape, lambda done: progress("paths", done, len(robots)))
-    paths = [route.path for route in routes]
-    egos = []
-    for robot, route in zip(robots, routes, strict=True):
-        egos.append(ego(robot, route.path, route.alone))
-        progress("alone", len(egos), len(robots))
+    reaches = [robot.footprint.radius + clearance / 2 for robot in robots]
 
-    chains = [chords(path) for path in paths]
-    pairs = candidate_pairs(chains, [robot.footprint.radius + clearance / 2 for robot in robots])
-    arcs = blocking_arcs(robots, paths, pairs, clearance)
-    urgent = urgency([robot.priority for robot in robots], [one.alone.arrival for one in egos])
-    order = topological_order(urgent, names, arcs)
-    if order is None:
-        raise NoPlanError([diagnose.cycle(shortest_cycle(names, arcs))])
+    def check_time() -> None:
+        if time_is_up():
+            raise NoPlanError([diagnose.time_is_up(0, total)])
 
-    neighbours: list[list[int]] = [[] for _ in robots]
-    for i, k in pairs:
-        neighbours[i].append(k)
-        neighbours[k].append(i)
-    scene = Scene(egos, chains, neighbours, blocked_places(arcs, names), clearance)
-    timings = plan_in_order(scene, order, lambda done: progress("velocities", done, len(robots)), time_is_up)
-
-    records = tuple(
-        RobotPlan(
-            robot,
-            egos[i].path,
-            timings[i].profile,
-            solo_arrival=egos[i].alone.arrival,
-            solo_bound=egos[i].solo_bound,
-            lower_bound=egos[i].solo_bound,
-            after=tuple(names[k] for k in timings[i].after),
-            before=tuple(names[k] for k in timings[i].before),
-            how=timings[i].how,
-        )
-        for i, robot in enumerate(robots)
+    quickest = find_routes(problem, options.shape, lambda done: progress("paths", done, total))
+    paths = [route.path for route in quickest]
+    pairs = candidate_pairs([chords(path) for path in paths], reaches)
+    found = reroute(
+        problem,
+        quickest,
+        find_blocks(robots, paths, pairs, clearance),
+        options.shape,
+        keep_paths=options.keep_paths,
+        done=lambda done, rings: progress("ways round", done, rings),
+        check_time=check_time,
     )
-    bound = math.fsum(one.solo_bound for one in egos)
-    return Plan(problem, records, tuple(names[i] for i in order), tuple(arcs), bound, "solo_bound")
+    if found.left:
+        raise NoPlanError(unopened(problem, found, keep_paths=options.keep_paths))
+
+    egos = []
+    for robot, route in zip(robots, found.routes, strict=True):
+        egos.append(ego(robot, route.path, route.alone))
+        progress("alone", len(egos), total)
+    urgent = urgency([robot.priority for robot in robots], [one.alone.arrival for one in egos])
+    order = topological_order(urgent, names, [arc_of(robots, block) for block in found.blocks])
+    if order is None:
+        raise RuntimeError("robots block each other in a ring although all rings were opened")
+    scene = scene_of(egos, reaches, found.blocks, clearance)
+    timings = plan_in_order(scene, order, lambda done: progress("velocities", done, total), time_is_up)
+    return plan_of(problem, quickest, found, egos, order, timings)
 
 
 def _result(problem: Problem, found: Plan, document: bytes, report: Report, seconds: float) -> Result:

@@ -56,6 +56,10 @@ def plan(
     time_limit: Annotated[float | None, typer.Option(metavar="S", help="Stop searching after this long [s].")] = None,
     gap_target: Annotated[float | None, typer.Option(metavar="G", help="Not supported yet.")] = None,
     seed: Annotated[int | None, typer.Option(metavar="N", help="For everything drawn at random.")] = None,
+    keep_paths: Annotated[
+        bool | None,
+        typer.Option("--keep-paths/--re-route", help="Let no robot go round the others' starts and goals."),
+    ] = None,
     plots: Annotated[
         bool | None,
         typer.Option(
@@ -86,6 +90,7 @@ def plan(
         time_limit=time_limit,
         gap_target=gap_target,
         seed=seed,
+        keep_paths=keep_paths,
     )
     folder = out if out is not None else Path("plans") / problem.stem
     files.prepare(folder)

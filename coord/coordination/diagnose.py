@@ -1,32 +1,63 @@
-"""Sentences for people: why there is no plan."""
+"""Sentences for people: why there is no plan, or why a path is not the quickest."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from coord.model.arrays import Point
 from coord.model.result import BlockingArc, Diagnosis
 
+#: More robots than this are not named in a list.
+_MOST_NAMES = 5
 
-def cycle(arcs: Sequence[BlockingArc]) -> Diagnosis:
-    """Robots that all wait for each other."""
+#: What helps robots in a ring: in general, where their own places are the reason, and where paths were to be kept.
+_MOVE = "Move one of these starts or goals out of the other's way"
+MAKE_ROOM: Final = f"{_MOVE}, or make room for a way round it."
+MOVE: Final = f"{_MOVE}."
+ALLOW_WAYS_ROUND: Final = f"Allow ways round, since the paths were to be kept. Otherwise: {MAKE_ROOM}"
+
+#: [s] A smaller difference rounds to 0.00 s.
+_SHOWN = 0.005
+
+
+def cycle(arcs: Sequence[BlockingArc], why: Sequence[str] = (), remedy: str = MAKE_ROOM) -> Diagnosis:
+    """Robots that all wait for each other; ``why`` : for each arc, the reason why no way round takes it away."""
     names = tuple(dict.fromkeys(arc.first for arc in arcs))
-    quoted = [f'"{name}"' for name in names]
-    who = f"{', '.join(quoted[:-1])} and {quoted[-1]}"
     way = "stand in each other's way" if len(names) == 2 else "stand in each other's way, in a ring"
+    notes = [f" ({note})" if note else "" for note in why or [""] * len(arcs)]
+    reasons = [_reason(arc) + note for arc, note in zip(arcs, notes, strict=True)]
     text = (
-        f"{who} {way}: {', and '.join(_reason(arc) for arc in arcs)}. "
+        f"{_listed(names)} {way}: {', and '.join(reasons)}. "
         "Each would have to go before the other: on these paths no order brings all of them home one after the other."
     )
-    remedy = "Move one of these starts or goals out of the other's way, or make room for a way round it."
     return Diagnosis("blocking-cycle", names, text, arcs[0].place, None, remedy)
 
 
-def stuck(name: str, others: Sequence[str], place: Point) -> Diagnosis:
-    """A robot for which no waiting helps: a defect of the order, said rather than hidden."""
-    who = ", ".join(f'"{other}"' for other in others)
-    text = f'"{name}" cannot pass {who}, however long it waits at its start {_at(place)}.'
-    return Diagnosis("never-free", (name, *others), text, place, None, "Give it a higher priority.")
+def handed_over(name: str, which: str) -> str:
+    """Why no way round helps: one robot needs the place of another; ``which`` : its "start", "goal" or "via point"."""
+    return f'no way round: the {which} of "{name}" is there'
+
+
+def given(name: str) -> str:
+    """Why no way round helps: the path is given."""
+    return f'no way round: the path of "{name}" is given'
+
+
+def no_way_round(name: str) -> str:
+    """Why no way round helps: there is none."""
+    return f'"{name}" finds no way round'
+
+
+def rerouted(name: str, around: Sequence[tuple[str, str]], ring: Sequence[str], extra: float) -> str:
+    """A robot on a longer path; ``around`` : names of others with "start" or "goal"; ``extra`` [s] alone."""
+    places = _and_more([f'"{other}" at its {at}' for other, at in around])
+    cost = f"{extra:.2f} s more alone" if extra >= _SHOWN else "which costs it no time alone"
+    others = _and_more([f'"{other}"' for other in ring])
+    return (
+        f'"{name}" goes round {places}, {cost}: on its quickest path, '
+        f"it and {others} would all have to go before each other, in a ring."
+    )
 
 
 def time_is_up(planned: int, total: int) -> Diagnosis:
@@ -41,6 +72,18 @@ def _reason(arc: BlockingArc) -> str:
     if arc.at == "start":
         return f'"{arc.first}" must leave its start {_at(arc.place)} before "{arc.then}" can pass there'
     return f'"{arc.first}" must have passed {_at(arc.place)} before "{arc.then}" parks there, at its goal'
+
+
+def _listed(names: Sequence[str]) -> str:
+    quoted = [f'"{name}"' for name in names]
+    return f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+
+
+def _and_more(words: Sequence[str]) -> str:
+    """A list as a sentence has it; of a long one its beginning."""
+    if len(words) > _MOST_NAMES:
+        words = [*words[: _MOST_NAMES - 1], f"{len(words) - _MOST_NAMES + 1} more"]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _at(place: Point | None) -> str:

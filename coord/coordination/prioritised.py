@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from coord.conflicts.chords import Chords
+from coord.conflicts.candidates import candidate_pairs
+from coord.conflicts.chords import Chords, chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import conflict_regions
 from coord.coordination import diagnose
-from coord.errors import NoPlanError
+from coord.coordination.blocking import Block
+from coord.errors import NoPlanError, SolverError
 from coord.model.result import BlockingArc
 from coord.timing.ego import Ego
-from coord.timing.meeting import Ends, Meeting, first_violated
+from coord.timing.meeting import Ends, Meeting
 from coord.timing.passing import Timing, time_robot
 
 
@@ -53,6 +55,16 @@ class Scene:
         return found
 
 
+def scene_of(egos: Sequence[Ego], reaches: Sequence[float], blocks: Iterable[Block], clearance: float) -> Scene:
+    """The scene of robots that reach so far [m] from their paths, their share of the clearance included."""
+    chains = [chords(ego.path) for ego in egos]
+    neighbours: list[list[int]] = [[] for _ in egos]
+    for i, k in candidate_pairs(chains, reaches):
+        neighbours[i].append(k)
+        neighbours[k].append(i)
+    return Scene(egos, chains, neighbours, frozenset(blocks), clearance)
+
+
 def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozenset[tuple[int, int, str]]:
     """Arcs as (resting robot, driving robot, where it rests)."""
     index = {name: i for i, name in enumerate(names)}
@@ -66,7 +78,7 @@ def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozens
 def plan_in_order(
     scene: Scene, order: Sequence[int], done: Callable[[int], None], time_is_up: Callable[[], bool] = lambda: False
 ) -> dict[int, Timing]:
-    """A profile for every robot, each against those before it in the order.
+    """A profile for every robot, each against those before it in an order that respects the blocking arcs.
 
     Parameters
     ----------
@@ -76,8 +88,7 @@ def plan_in_order(
     Raises
     ------
     NoPlanError
-        When the time is up, or a robot stays blocked for ever, which an order that respects the blocking arcs
-        excludes.
+        When the time is up.
     """
     timings: dict[int, Timing] = {}
     for i in order:
@@ -85,13 +96,25 @@ def plan_in_order(
             raise NoPlanError([diagnose.time_is_up(len(timings), len(order))])
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
         is_last = all(k in timings for k in scene.neighbours[i])
-        timing = time_robot(scene.egos[i], meetings, is_last=is_last)
-        if timing is None:
-            ego = scene.egos[i]
-            late = ego.alone.shifted(max(timings[k].profile.arrival for k in timings))
-            violated = first_violated(meetings, late)
-            others = [] if violated is None else [scene.egos[meetings[violated[0]].other].robot.name]
-            raise NoPlanError([diagnose.stuck(ego.robot.name, others, ego.robot.start)])
-        timings[i] = timing
+        timings[i] = _timing(scene.egos[i], meetings, is_last=is_last) or _waiting(scene.egos[i], meetings)
         done(len(timings))
     return timings
+
+
+def _timing(ego: Ego, meetings: list[Meeting], *, is_last: bool) -> Timing | None:
+    """The profile that the timing stage finds; None where it finds none, or a library fails it."""
+    try:
+        return time_robot(ego, meetings, is_last=is_last)
+    except SolverError:
+        return None
+
+
+def _waiting(ego: Ego, meetings: list[Meeting]) -> Timing:
+    """Wait at the start until all that come near have arrived, then drive alone: with acyclic blocks always possible.
+
+    Nobody who rests at its goal by then is in the way, since it would come later in the order; and the robot itself
+    is in nobody's way while it waits, since it would come earlier. So this needs no check but the certificate.
+    """
+    last = max((meeting.profile.arrival for meeting in meetings), default=0.0)
+    alone = ego.alone.shifted(max(last - ego.alone.departure, 0.0))
+    return Timing(alone, tuple(sorted({meeting.other for meeting in meetings})), (), "waited")

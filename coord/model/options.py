@@ -42,6 +42,7 @@ class Options:
     time_limit : wall time [s] after which a run without a plan gives up; None for no limit.
     gap_target : None; the gap at which a search over orders would end comes with that search.
     seed : of every random draw; nothing is drawn yet.
+    keep_paths : every robot keeps its quickest path, also where robots on such paths block each other in a ring.
     """
 
     method: str = "velocity"
@@ -51,6 +52,7 @@ class Options:
     time_limit: float | None = None
     gap_target: float | None = None
     seed: int = 0
+    keep_paths: bool = False
 
     def __post_init__(self) -> None:
         faults = []

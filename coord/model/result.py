@@ -42,17 +42,38 @@ class BlockingArc:
     place: Point | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Reroute:
+    """A robot that left its quickest path, because on it robots would block each other in a ring.
+
+    Parameters
+    ----------
+    robot : its name; ``ring`` : the names of all robots of that ring.
+    around : the arcs of the ring that its new path takes away: the places that it now goes round.
+    extra_length, extra_time : what the new path costs it alone [m], [s].
+    text : the same for people.
+    """
+
+    robot: str
+    ring: tuple[str, ...]
+    around: tuple[BlockingArc, ...]
+    extra_length: float
+    extra_time: float
+    text: str
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotPlan:
     """One robot's part of a plan.
 
     Parameters
     ----------
-    solo_arrival : arrival [s] alone on its path, release included.
+    solo_arrival : arrival [s] alone on its quickest path, release included, before any re-routing.
     solo_bound : certified lower bound [s] on any arrival on this path, release included.
     lower_bound : certified lower bound [s] given the robots planned before.
     after, before : names of earlier robots that it let pass, and that it passed ahead of.
-    how : the step of the method that found the profile.
+    how : the step of the method that found the profile: "alone", "start delay", "splice", "program", or "waited"
+        where none of them did, and the robot waits for all that come near it and then drives alone.
     """
 
     robot: Robot
@@ -73,7 +94,10 @@ class RobotPlan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Certified or not: paths and profiles of all robots, in the order of the problem."""
+    """Certified or not: paths and profiles of all robots, in the order of the problem.
+
+    ``rerouted`` : who left its quickest path, and why; empty in a plan read from a file, which does not keep it.
+    """
 
     problem: Problem
     robots: tuple[RobotPlan, ...]
@@ -81,6 +105,7 @@ class Plan:
     blocking: tuple[BlockingArc, ...]
     lower_bound: float
     lower_bound_by: str
+    rerouted: tuple[Reroute, ...] = ()
 
     @property
     def sum_of_arrivals(self) -> float:
@@ -94,7 +119,7 @@ class Plan:
 
     @property
     def sum_of_solo_arrivals(self) -> float:
-        """Sum of the arrivals every robot would have alone [s]."""
+        """Sum of the arrivals every robot would have alone on its quickest path [s]."""
         return math.fsum(robot.solo_arrival for robot in self.robots)
 
     @property

@@ -70,6 +70,7 @@ class PlanForm(Form):
     time_limit: Number | None = _takes("a number in s")
     gap_target: Number | None = _takes("a number")
     seed: int | None = _takes("a whole number")
+    keep_paths: bool | None = _takes("true or false")
     plots: bool | None = _takes("true or false")
 
 

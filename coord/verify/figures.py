@@ -47,7 +47,6 @@ def _check_passing(robot: Robot, rank: Mapping[str, int], names: set[str], findi
 def check_bounds(robot: Robot, path: Curve, findings: Findings) -> None:
     """Check what is claimed of one robot's best arrival; on a straight line, against the fastest motion there is."""
     claims = [
-        ("solo_bound", robot.solo_bound, "solo_arrival", robot.solo_arrival),
         ("solo_bound", robot.solo_bound, "arrival", robot.arrival),
         ("lower_bound", robot.lower_bound, "arrival", robot.arrival),
     ]
@@ -55,6 +54,11 @@ def check_bounds(robot: Robot, path: Curve, findings: Findings) -> None:
         if not value <= above + RELATIVE * abs(above) + TIME:
             text = f"robot {who(robot.name)}: {name} {value:.12g} s is above its {other} {above:.12g} s"
             findings.add("bound", text, [robot.name])
+    apart = math.hypot(robot.goal[0] - robot.start[0], robot.goal[1] - robot.start[1])
+    least = robot.release + (fastest(apart, robot.limits) if apart > 0.0 else 0.0)
+    if not robot.solo_arrival >= least - BOUND:
+        text = f"solo_arrival {robot.solo_arrival:.12g} s is below {least:.12g} s, the least on any path"
+        findings.add("bound", f"robot {who(robot.name)}: {text}", [robot.name])
     if path.straight:
         best = robot.release + fastest(path.length, robot.limits)
         if not robot.solo_bound <= best + BOUND:

@@ -7,9 +7,9 @@ import pytest
 
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import chords
-from coord.coordination.blocking import blocking_arcs
+from coord.coordination.blocking import Block, blocking_arcs, find_blocks, is_blocked, whose_place
 from coord.model.footprint import Footprint, square
-from coord.model.path import straight
+from coord.model.path import Path, straight
 from coord.model.robot import Limits, Robot
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
@@ -113,3 +113,40 @@ def test_a_disc_and_a_square_keep_the_clearance_to_its_side_and_its_corner():
                 robots = [Robot("0", driving, limits, *WAY), Robot("1", resting, limits, place, (5.0, 9.0))]
                 found = blocking_arcs(robots, [straight(*WAY), straight(place, (5.0, 9.0))], [(0, 1)], 0.05)
                 assert (("1", "0", "start") in [(arc.first, arc.then, arc.at) for arc in found]) == blocks
+
+
+def test_the_quick_look_misses_no_block():
+    """Six scenes of discs and squares on winding paths: the blocks are exactly those of the exact test of every place, pair by pair."""
+    rng = np.random.default_rng(2)
+    count = 0
+    for _ in range(6):
+        shapes = [Footprint(0.3) if rng.random() < 0.5 else square(0.5) for _ in range(6)]
+        pieces = [np.column_stack([rng.uniform(0.5, 3.0, 4), rng.uniform(-1.0, 1.0, (4, 2))]) for _ in range(6)]
+        paths = [Path(tuple(rng.uniform(0, 6, 3).tolist()), rows) for rows in pieces]
+        robots = [
+            Robot(str(k), shape, LIMITS, tuple(path.poses[0, :2].tolist()), path.end)
+            for k, (shape, path) in enumerate(zip(shapes, paths, strict=True))
+        ]
+        pairs = [(i, k) for i in range(6) for k in range(i + 1, 6)]
+        expected = [
+            block
+            for i, k in pairs
+            for block in (Block(a, b, at) for a, b in ((i, k), (k, i)) for at in ("start", "goal"))
+            if is_blocked(paths[block.driving], block, robots, 0.05)
+        ]
+        assert find_blocks(robots, paths, pairs, 0.05) == expected
+        count += len(expected)
+    assert count > 20
+
+
+def test_a_block_comes_from_the_end_points_if_the_driving_robot_has_a_place_there():
+    """Its start, its goal or a via point nearer than the distance; on the way between it is nobody's."""
+    robots = [
+        Robot("drives", Footprint(0.3), LIMITS, (0.0, 0.0), (9.0, 0.0), via=((5.0, 0.0),)),
+        Robot("near the start", Footprint(0.3), LIMITS, (0.3, 0.2), (20.0, 9.0)),
+        Robot("near the goal", Footprint(0.3), LIMITS, (8.6, -0.3), (20.0, 9.0)),
+        Robot("near the via point", Footprint(0.3), LIMITS, (5.5, 0.3), (20.0, 9.0)),
+        Robot("between", Footprint(0.3), LIMITS, (3.0, 0.0), (20.0, 9.0)),
+    ]
+    told = [whose_place(Block(k, 0, "start"), robots, 0.05) for k in range(1, 5)]
+    assert told == ["start", "goal", "via point", ""]

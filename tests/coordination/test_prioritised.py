@@ -6,7 +6,9 @@ import dataclasses
 
 import pytest
 
+from coord.errors import SolverError
 from coord.model.footprint import Footprint
+from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
 from coord.plan import plan
@@ -83,11 +85,15 @@ def test_nobody_leaves_before_its_release():
 
 
 def test_a_robot_at_its_goal_arrives_at_its_release_and_is_an_obstacle():
-    """Beside the way it disturbs nobody; on the way it blocks, and is named."""
+    """Beside the way it disturbs nobody; on the way the other goes round it, or must keep its path and the two are named."""
     goes = robot("goes", (-9.0, 0.0), (9.0, 0.0))
     beside = plan(Problem("p", FLOOR, (robot("rests", (0.0, 0.7), (0.0, 0.7), release=2.5), goes))).plan
     assert [one.arrival for one in beside.robots] == [2.5, pytest.approx(20.5)]
-    on_it = plan(Problem("p", FLOOR, (robot("rests", (0.0, 0.5), (0.0, 0.5)), goes)))
+    on_the_way = Problem("p", FLOOR, (robot("rests", (0.0, 0.5), (0.0, 0.5)), goes))
+    round_it = plan(on_the_way)
+    assert round_it.certified
+    assert [one.robot for one in round_it.plan.rerouted] == ["goes"]
+    on_it = plan(on_the_way, Options(keep_paths=True))
     assert on_it.plan is None
     assert on_it.diagnoses[0].code == "blocking-cycle"
     assert set(on_it.diagnoses[0].robots) == {"rests", "goes"}
@@ -101,3 +107,34 @@ def test_robots_that_swap_places_on_one_line_are_named_with_both_places():
     assert diagnosis.code == "blocking-cycle"
     assert '"a"' in diagnosis.text
     assert '"b"' in diagnosis.text
+
+
+@pytest.mark.parametrize("failing", ["finds none", "library"])
+def test_where_the_timing_stage_fails_a_robot_waits_until_all_near_it_have_arrived(monkeypatch, failing):
+    """Whether it finds nothing or a library gives up: everybody drives alone after those before it, and the plan says so."""
+
+    def fails(*_, **__):
+        if failing == "library":
+            raise SolverError("out of order")
+
+    monkeypatch.setattr("coord.coordination.prioritised.time_robot", fails)
+    result = plan(star(4))
+    assert result.certified
+    at = {one.robot.name: one for one in result.plan.robots}
+    arrived = 0.0
+    for name in result.plan.order:
+        assert at[name].how == "waited"
+        assert at[name].profile.departure == pytest.approx(arrived)
+        arrived = at[name].arrival
+        earlier = result.plan.order[: result.plan.order.index(name)]
+        assert (set(at[name].after), at[name].before) == (set(earlier), ())
+
+
+def test_a_robot_that_waits_does_not_leave_before_its_release(monkeypatch):
+    """Nor later than needed: released after all have arrived, it leaves at its release."""
+    monkeypatch.setattr("coord.coordination.prioritised.time_robot", lambda *_, **__: None)
+    problem = star(2, [1, 2])
+    late = dataclasses.replace(problem.robots[1], release=500.0)
+    found = plan(dataclasses.replace(problem, robots=(problem.robots[0], late))).plan
+    assert found.robots[1].profile.departure == 500.0
+    assert found.robots[1].arrival == found.robots[1].solo_arrival

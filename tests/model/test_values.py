@@ -134,10 +134,10 @@ def test_the_area_does_not_depend_on_where_the_ring_lies(x, y):
 
 def test_options_tell_what_is_not_built_yet_from_what_is_unknown():
     """Both are refused, never ignored, and all at once."""
-    with pytest.raises(InvalidValueError, match='shape "follow" is not supported yet') as caught:
-        Options(shape="follow", order="nicest", time_limit=0.0, gap_target=NAN, seed=-1)
+    with pytest.raises(InvalidValueError, match='order "search" is not supported yet') as caught:
+        Options(shape="nicest", order="search", time_limit=0.0, gap_target=NAN, seed=-1)
     assert [field for field, _ in caught.value.faults] == ["shape", "order", "time_limit", "gap_target", "seed"]
-    assert 'order "nicest" is unknown' in str(caught.value)
+    assert 'shape "nicest" is unknown' in str(caught.value)
 
 
 def everything():
