@@ -138,7 +138,8 @@ def _bend(line: Line, detour: Detour, limits: Limits) -> _Bend | set[int] | str:
     """The quickest curve past a detour that keeps the distance; or the parts that are still in its way; or why not."""
     rooms = _ROOM * (detour.first - detour.least), _ROOM * (detour.most - detour.last)
     feet = {(min(r * detour.height, rooms[0]), min(r * detour.height, rooms[1])): None for r in _REACHES}
-    bends = [_raised(line, flanks(detour, reach), p, 1.0) for reach, p in product(feet, _JOINS)]
+    fitted_flanks = [found for found in (flanks(detour, reach) for reach in feet) if found is not None]
+    bends = [_raised(line, found, p, 1.0) for found, p in product(fitted_flanks, _JOINS)]
     options = _timed(line, [bend for bend in bends if bend is not None], limits)
     if not options:
         return f"the detour {_where(detour)} has too little room for its feet"

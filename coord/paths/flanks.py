@@ -22,6 +22,7 @@ import numpy as np
 from coord.model.arrays import Array
 from coord.model.route import Fit
 from coord.paths.detours import Detour
+from coord.tolerances import SAME_PLACE
 
 #: Points of the hull that a flank is fitted to.
 _POINTS = 60
@@ -109,14 +110,16 @@ class Curve:
         return values[0], values[1], values[2]
 
 
-def flanks(detour: Detour, reach: tuple[float, float]) -> Flanks:
-    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope."""
+def flanks(detour: Detour, reach: tuple[float, float]) -> Flanks | None:
+    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope; None where a flank is upright."""
     x = np.concatenate([[detour.first - reach[0]], detour.x, [detour.last + reach[1]]])
     y = np.concatenate([[0.0], detour.envelope, [0.0]])
     hull = _upper_hull(x, y)
     tops = hull[hull[:, 1] >= detour.height * (1 - 1e-9)]
     rise = _points(hull[hull[:, 0] <= tops[0, 0]], detour.height)
     fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), detour.height) * (-1, 1)
+    if any(np.ptp(points[:, 0]) < SAME_PLACE or points[:, 1].min() <= 0 for points in (rise, fall)):
+        return None
     up, lift_up = _fit("rise", rise, detour.middle)
     down, lift_down = _fit("fall", fall, detour.middle)
     return Flanks(detour, (up, down), (lift_up, lift_down), rise, fall)
