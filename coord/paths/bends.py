@@ -7,6 +7,7 @@ about it are computed anew, as far as the change can be felt.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -43,7 +44,10 @@ class Bends:
     """All turns of a skeleton with their bends, and the tangents in between."""
 
     def __init__(self, skeleton: Skeleton, bends: list[Bend]) -> None:
-        """Lay the bends out; ``fits`` tells whether that went well."""
+        """Lay the bends out; ``fits`` tells whether that went well.
+
+        ``vanished`` : a turn that would have to turn the other way: its neighbours lead the path past that corner.
+        """
         self.skeleton, self.bends = skeleton, bends
         self._places, self._sides = skeleton.places, skeleton.sides
         # a place to pass (radius 0) is met exactly, an obstacle's corner with a little air
@@ -53,6 +57,7 @@ class Bends:
         self.headings, self.lengths = [0.0] * (count + 1), [0.0] * (count + 1)
         self.angles = [turn.angle for turn in skeleton.turns]
         self._is_drawn, self._moved, self._loose = True, (0, count), set[int]()
+        self.vanished: int | None = None
         if self._draw(range(count + 1)):
             self._iterate(set(range(count)), _CONVERGED)
 
@@ -64,13 +69,18 @@ class Bends:
     def changed(self, k: int, bend: Bend) -> Bends:
         """With another bend at turn k, roughly laid out: to be settled before it becomes a path."""
         other = object.__new__(Bends)
-        other.skeleton, other._rho, other._is_drawn = self.skeleton, self._rho, True
+        other.skeleton, other._rho, other._is_drawn, other.vanished = self.skeleton, self._rho, True, None
         other._places, other._sides, other._moved = self._places, self._sides, (k, k + 1)
         other.bends = [*self.bends[:k], bend, *self.bends[k + 1 :]]
         other.radii, other.angles = self.radii.copy(), self.angles.copy()
         other.headings, other.lengths = self.headings.copy(), self.lengths.copy()
         other._iterate({k}, _ROUGHLY)
         return other
+
+    def without(self, k: int) -> Bends:
+        """Past corner k, and not round it any more."""
+        turns = (*self.skeleton.turns[:k], *self.skeleton.turns[k + 1 :])
+        return Bends(dataclasses.replace(self.skeleton, turns=turns), [*self.bends[:k], *self.bends[k + 1 :]])
 
     def settle(self) -> bool:
         """Lay out exactly what was changed; whether it still fits."""
@@ -155,6 +165,6 @@ class Bends:
             least = sharpest - 2 * math.pi
             self.angles[k] = (turned - least) % (2 * math.pi) + least
             if self.angles[k] <= 0:
-                self._is_drawn = False
+                self._is_drawn, self.vanished = False, k
                 return False
         return True

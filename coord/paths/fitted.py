@@ -21,7 +21,7 @@ from coord.geometry.clearance import keeps_distance
 from coord.model.path import Path, straight
 from coord.model.robot import Limits
 from coord.paths.bends import AIR, Bend, Bends, Piece
-from coord.paths.skeleton import Skeleton, Turn
+from coord.paths.skeleton import Skeleton
 from coord.paths.taut import SMALLEST_RADIUS, taut
 from coord.solvers.jerk import LinkTimes, rest_to_rest
 
@@ -45,35 +45,53 @@ _CAP_RATIO = 1.5
 
 
 def fitted(skeleton: Skeleton, limits: Limits, floor: Floor) -> Path | None:
-    """The quickest path found along a skeleton that keeps the floor's distances; None where ``taut`` finds none."""
+    """The quickest path found along a skeleton that keeps the floor's distances; None where ``taut`` finds none.
+
+    Where turns compete for room, the first to be widened takes it: the turns are gone through from the front, and
+    once more from the back.
+    """
     if not skeleton.turns:
         return straight(skeleton.start, skeleton.goal)
-    best = taut(skeleton, floor)
-    if best is None:
+    tight = taut(skeleton, floor)
+    if tight is None:
         return None
     clock = _Clock(limits)
-    least = clock(best.pieces.tolist())
+    start = best = (clock(tight.pieces.tolist()), tight)
     ideal = rest_to_rest(skeleton.length, limits).arrival * (1 + _GOOD_ENOUGH)
     bends = Bends(skeleton, [Bend(max(turn.radius, SMALLEST_RADIUS) + AIR, 0.0) for turn in skeleton.turns])
-    if not bends.fits:
-        return best
+    for forward in (True, False):
+        if bends.fits and best[0] > ideal and (forward or len(bends.bends) > 1):
+            found = _widened(bends, start, ideal, forward, limits, clock, floor)
+            best = min(best, found, key=lambda one: one[0])
+    return best[1]
+
+
+def _widened(
+    bends: Bends,
+    best: tuple[float, Path],
+    ideal: float,
+    forward: bool,
+    limits: Limits,
+    clock: _Clock,
+    floor: Floor,
+) -> tuple[float, Path]:
+    """Time and path after all turns were gone through, one way or the other, until nothing changes."""
     for _ in range(_ROUNDS):
-        changed = False
-        for k, turn in enumerate(skeleton.turns):
-            if least <= ideal:
-                return best
-            radii = _radii(turn, limits)
+        before = best[0]
+        done = 0
+        while done < len(bends.bends) and best[0] > ideal:
+            k = done if forward else len(bends.bends) - 1 - done
+            count = len(bends.bends)
             for trying_radii in (True, False):
-                now = bends.bends[k]
-                candidates = [Bend(radius, _SHARE) for radius in radii]
-                if not trying_radii:
-                    near = int(np.abs(np.log(np.array(radii) / now.radius)).argmin())
-                    candidates = [Bend(r, share) for r in radii[max(near - 1, 0) : near + 2] for share in _OTHER_SHARES]
-                found = _quickest(bends, k, candidates, least * (1 - _LEAST_GAIN), clock, floor)
+                candidates = _candidates(bends, k, limits, trying_radii)
+                found = _quickest(bends, k, candidates, best[0] * (1 - _LEAST_GAIN), clock, floor)
                 if found is not None:
-                    least, bends, best = found
-                    changed = True
-        if not changed:
+                    time, bends, path = found
+                    best = (time, path)
+                if len(bends.bends) < count:  # a corner is passed clear of now: the places of the others have changed
+                    break
+            done += len(bends.bends) == count
+        if best[0] == before:
             break
     return best
 
@@ -88,22 +106,25 @@ class _Clock:
         return quick_estimate(speed_limit_of(pieces, self._limits, _CAP_RATIO), self._limits, self._links)
 
 
-def _radii(turn: Turn, limits: Limits) -> list[float]:
-    """Radii [m] for a turn, from the tightest up to one that is driven at full speed."""
-    tightest = max(turn.radius, SMALLEST_RADIUS)
+def _candidates(bends: Bends, k: int, limits: Limits, trying_radii: bool) -> list[Bend]:
+    """Bends for one turn: radii up to one that is driven at full speed; or other shares about the radius it has."""
+    tightest = max(bends.skeleton.turns[k].radius, SMALLEST_RADIUS)
     widest = max(limits.speed**2 / limits.lateral_acceleration, tightest) * 1.0001
-    return [float(radius) for radius in np.geomspace(tightest, widest, _RADII) + AIR]
+    radii = [float(radius) for radius in np.geomspace(tightest, widest, _RADII) + AIR]
+    if trying_radii:
+        return [Bend(radius, _SHARE) for radius in radii]
+    near = int(np.abs(np.log(np.array(radii) / bends.bends[k].radius)).argmin())
+    return [Bend(radius, share) for radius in radii[max(near - 1, 0) : near + 2] for share in _OTHER_SHARES]
 
 
 def _quickest(
     bends: Bends, k: int, candidates: list[Bend], least: float, clock: _Clock, floor: Floor
 ) -> tuple[float, Bends, Path] | None:
     """The quickest of some bends at turn k that keeps the distance and takes less than ``least`` [s], if any does."""
-    trials = [bends.changed(k, bend) for bend in candidates if bend != bends.bends[k]]
-    timed = [(clock(trial.pieces()), trial) for trial in trials if trial.fits]
+    trials = [_changed(bends, k, bend) for bend in candidates if bend != bends.bends[k]]
+    timed = [(clock(trial.pieces()), bend, trial) for bend, trial in trials if trial.fits]
     too_wide: dict[float, float] = {}  # for each share the least radius that came too near to something
-    for time, trial in sorted(timed, key=lambda entry: entry[0]):
-        bend = trial.bends[k]
+    for time, bend, trial in sorted(timed, key=lambda entry: entry[0]):
         if time >= least:
             return None
         if bend.radius < too_wide.get(bend.share, math.inf) and trial.settle():
@@ -111,3 +132,11 @@ def _quickest(
                 return time, trial, path
             too_wide[bend.share] = bend.radius
     return None
+
+
+def _changed(bends: Bends, k: int, bend: Bend) -> tuple[Bend, Bends]:
+    """The bends with another one at turn k, past corners that it leads the path clear of."""
+    trial = bends.changed(k, bend)
+    while trial.vanished is not None and len(trial.bends) > 1 and trial.skeleton.turns[trial.vanished].radius > 0:
+        trial = trial.without(trial.vanished)
+    return bend, trial
