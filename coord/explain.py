@@ -19,10 +19,10 @@ from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import Chords, chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import ConflictRegion, conflict_regions
-from coord.coordination import diagnose
-from coord.coordination.blocking import blocking_arcs
-from coord.coordination.order import shortest_cycle, topological_order, urgency
-from coord.coordination.prioritised import blocked_places
+from coord.coordination.blocking import arc_of, find_blocks
+from coord.coordination.order import topological_order, urgency
+from coord.coordination.records import reroute_record, unopened
+from coord.coordination.rerouting import Rerouting, reroute
 from coord.errors import InvalidValueError, NoPlanError
 from coord.geometry.clusters import names_of
 from coord.geometry.growth import Grown, grow
@@ -31,7 +31,7 @@ from coord.model.footprint import Footprint
 from coord.model.options import Options
 from coord.model.path import Path
 from coord.model.problem import Problem
-from coord.model.result import BlockingArc, Diagnosis
+from coord.model.result import BlockingArc, Diagnosis, Reroute
 from coord.model.robot import Robot
 from coord.model.route import Route
 from coord.paths.routes import find_routes
@@ -45,18 +45,20 @@ _AS_CLOSE = 0.01
 class Trip:
     """What one robot does alone.
 
-    ``route`` : None where it has no way, and ``diagnosis`` says why; ``past`` : names of the obstacles on its
-    straight line, leg by leg where it has places to pass, empty where nothing stands there.
+    ``quickest`` : None where it has no way, and ``diagnosis`` says why; ``route`` : the one it takes, which is another
+    where it was re-routed; ``past`` : names of the obstacles on its straight line, leg by leg where it has places to
+    pass, empty where nothing stands there.
     """
 
     robot: Robot
+    quickest: Route | None
     route: Route | None
     past: tuple[str, ...] = ()
     diagnosis: Diagnosis | None = None
 
     @property
-    def solo_arrival(self) -> float | None:
-        """Arrival [s] with nobody else on the floor, release included; None without a way."""
+    def arrival(self) -> float | None:
+        """Arrival [s] on its route with nobody else on the floor, release included; None without a way."""
         return None if self.route is None else self.route.alone.shifted(self.robot.release).arrival
 
 
@@ -87,16 +89,6 @@ class Deviation:
     chain: tuple[BlockingArc, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Rerouted:
-    """A robot that goes round places where others rest, and what its way takes then: length [m], time [s]."""
-
-    robot: str
-    past: tuple[str, ...]
-    length: float
-    time: float
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Explanation:
     """All that is known before the first velocity profile is sought.
@@ -104,10 +96,10 @@ class Explanation:
     Parameters
     ----------
     trips : in the order of the problem; ``shape`` : the one asked for.
-    encounters, arcs : of the robots that have a way.
+    encounters, arcs : of the robots that have a way, on the routes they take.
     urgent : names, by priority, then the longest alone first, then as given; robots without a way are left out.
     order : names, first planned first; None where there is none, and ``diagnoses`` say why.
-    deviations : one for each robot that goes before a more urgent one.
+    deviations : one for each robot that goes before a more urgent one; ``rerouted`` : who left its quickest route.
     """
 
     problem: Problem
@@ -118,20 +110,20 @@ class Explanation:
     urgent: tuple[str, ...]
     order: tuple[str, ...] | None
     deviations: tuple[Deviation, ...] = ()
-    rerouted: tuple[Rerouted, ...] = ()
+    rerouted: tuple[Reroute, ...] = ()
     diagnoses: tuple[Diagnosis, ...] = ()
 
 
 def explain(
     problem: Problem,
     options: Options | None = None,
-    progress: Callable[[str, int, int], None] = lambda stage, done, total: None,
+    progress: Callable[[str, int, int], None] | None = None,
 ) -> Explanation:
     """Tell how a plan would come about; robots without a way and cycles are part of the story, not errors.
 
     Parameters
     ----------
-    options : shape and order are used; the others concern the plan itself.
+    options : shape, order and keep_paths are used; the others concern the plan itself.
     progress : called with a stage's name, how much of it is done, and how much there is.
 
     Raises
@@ -143,37 +135,35 @@ def explain(
     if problem.workspace.after_arrival != "stay":
         text = f'after_arrival "{problem.workspace.after_arrival}" is not supported yet'
         raise InvalidValueError([("after_arrival", text)])
+    progress = progress or (lambda stage, done, total: None)
     trips = _trips(problem, options.shape, lambda done: progress("paths", done, len(problem.robots)))
-    lanes = [_Lane(trip.robot, trip.route.path, chords(trip.route.path)) for trip in trips if trip.route is not None]
-    robots, clearance = [lane.robot for lane in lanes], problem.workspace.clearance
-    names = [robot.name for robot in robots]
+    lost = tuple(trip.diagnosis for trip in trips if trip.diagnosis is not None)
+    driving = tuple(trip.robot for trip in trips if trip.quickest is not None)
+    if not driving:
+        return Explanation(problem, options.shape, trips, (), (), (), None, diagnoses=lost)
+    rest = dataclasses.replace(problem, robots=driving)
+    quickest = [trip.quickest for trip in trips if trip.quickest is not None]
+    found = _rerouting(rest, quickest, options, lambda done, total: progress("ways round", done, total))
+    taken = {robot.name: route for robot, route in zip(driving, found.routes, strict=True)}
+    trips = tuple(dataclasses.replace(trip, route=taken.get(trip.robot.name)) for trip in trips)
 
-    reaches = [robot.footprint.radius + clearance / 2 for robot in robots]
-    pairs = candidate_pairs([lane.chords for lane in lanes], reaches) if lanes else []
-    arcs = blocking_arcs(robots, [lane.path for lane in lanes], pairs, clearance)
-    blocked = blocked_places(arcs, names)
-    encounters: list[Encounter] = []
-    for done, pair in enumerate(pairs, 1):
-        encounters += _encounters(lanes, pair, blocked, clearance)
-        progress("meetings", done, len(pairs))
-
-    arrivals = [trip.solo_arrival for trip in trips if trip.solo_arrival is not None]
-    urgent = urgency([robot.priority for robot in robots], arrivals)
-    order = topological_order(urgent, names, arcs)
-    lost = [trip.diagnosis for trip in trips if trip.diagnosis is not None]
-    ring = [diagnose.cycle(shortest_cycle(names, arcs))] if order is None else []
-    ordered = None if lost or order is None else tuple(names[i] for i in order)
-    wished = tuple(names[i] for i in urgent)
+    encounters = _all_encounters(rest, found.routes, lambda done, total: progress("meetings", done, total))
+    arcs = tuple(arc_of(driving, block) for block in found.blocks)
+    names, arrivals = [robot.name for robot in driving], [trip.arrival for trip in trips if trip.arrival is not None]
+    urgent = urgency([robot.priority for robot in driving], arrivals)
+    order = None if lost or found.left else topological_order(urgent, names, arcs)
+    ordered, wished = None if order is None else tuple(names[i] for i in order), tuple(names[i] for i in urgent)
     return Explanation(
         problem,
         options.shape,
-        tuple(trips),
-        tuple(encounters),
-        tuple(arcs),
+        trips,
+        encounters,
+        arcs,
         wished,
         ordered,
         () if ordered is None else _deviations(ordered, wished, arcs),
-        diagnoses=(*lost, *ring),
+        tuple(reroute_record(rest, quickest[i], found, i) for i in found.around),
+        (*lost, *unopened(rest, found, keep_paths=options.keep_paths)),
     )
 
 
@@ -186,25 +176,45 @@ class _Lane:
     chords: Chords
 
 
-def _trips(problem: Problem, shape: str, done: Callable[[int], None]) -> list[Trip]:
-    """What every robot does alone; the first search ends with all that have no way, a second one leaves them out."""
-    lost: dict[str, Diagnosis] = {}
-    try:
-        found = find_routes(problem, shape, done, thorough=True)
-    except NoPlanError as failure:
-        lost = {name: diagnosis for diagnosis in failure.diagnoses for name in diagnosis.robots}
-        others = tuple(robot for robot in problem.robots if robot.name not in lost)
-        found = find_routes(dataclasses.replace(problem, robots=others), shape, done, thorough=True) if others else []
-    routes = iter(found)
+def _lanes(robots: Sequence[Robot], routes: Sequence[Route]) -> list[_Lane]:
+    return [_Lane(robot, one.path, chords(one.path)) for robot, one in zip(robots, routes, strict=True)]
+
+
+def _trips(problem: Problem, shape: str, done: Callable[[int], None]) -> tuple[Trip, ...]:
+    """What every robot does alone, in the order of the problem, before any re-routing."""
+    routes, lost = _routes(problem, shape, done)
     grounds: dict[Footprint, Grown] = {}
     trips = []
     for robot in problem.robots:
-        if robot.name in lost:
-            trips.append(Trip(robot, None, diagnosis=lost[robot.name]))
-            continue
-        route = next(routes)
-        trips.append(Trip(robot, route, _in_the_way(problem, robot, grounds) if route.side else ()))
-    return trips
+        route = routes.get(robot.name)
+        past = _in_the_way(problem, robot, grounds) if route is not None and route.side else ()
+        trips.append(Trip(robot, route, route, past, lost.get(robot.name)))
+    return tuple(trips)
+
+
+def _routes(problem: Problem, shape: str, done: Callable[[int], None]) -> tuple[dict[str, Route], dict[str, Diagnosis]]:
+    """Routes by name, both sides compared wherever there are two, and why the other robots have none."""
+    try:
+        return _by_name(problem, shape, done), {}
+    except NoPlanError as failure:
+        suspects = {name for diagnosis in failure.diagnoses for name in diagnosis.robots}
+    others = tuple(robot for robot in problem.robots if robot.name not in suspects)
+    routes: dict[str, Route] = {}
+    lost: dict[str, Diagnosis] = {}
+    if others:
+        routes = _by_name(dataclasses.replace(problem, robots=others), shape, done)
+    for robot in (robot for robot in problem.robots if robot.name in suspects):
+        # a side that a plan would never look at may be what failed: only the plan's own search tells
+        try:
+            (routes[robot.name],) = find_routes(dataclasses.replace(problem, robots=(robot,)), shape)
+        except NoPlanError as failure:
+            lost[robot.name] = failure.diagnoses[0]
+    return routes, lost
+
+
+def _by_name(problem: Problem, shape: str, done: Callable[[int], None]) -> dict[str, Route]:
+    found = find_routes(problem, shape, done, thorough=True)
+    return {robot.name: route for robot, route in zip(problem.robots, found, strict=True)}
 
 
 def _in_the_way(problem: Problem, robot: Robot, grounds: dict[Footprint, Grown]) -> tuple[str, ...]:
@@ -218,21 +228,39 @@ def _in_the_way(problem: Problem, robot: Robot, grounds: dict[Footprint, Grown])
     return tuple(names_of(problem.obstacles, grounds[shape], np.unique(hit)))
 
 
-def _encounters(
-    lanes: Sequence[_Lane], pair: tuple[int, int], blocked: frozenset[tuple[int, int, str]], clearance: float
-) -> list[Encounter]:
+def _candidates(lanes: Sequence[_Lane], clearance: float) -> list[tuple[int, int]]:
+    reaches = [lane.robot.footprint.radius + clearance / 2 for lane in lanes]
+    return candidate_pairs([lane.chords for lane in lanes], reaches)
+
+
+def _rerouting(
+    problem: Problem, quickest: Sequence[Route], options: Options, done: Callable[[int, int], None]
+) -> Rerouting:
+    """Who blocks whom, and who leaves its quickest route for that."""
+    paths, clearance = [route.path for route in quickest], problem.workspace.clearance
+    pairs = _candidates(_lanes(problem.robots, quickest), clearance)
+    blocks = find_blocks(problem.robots, paths, pairs, clearance)
+    return reroute(problem, quickest, blocks, options.shape, keep_paths=options.keep_paths, done=done)
+
+
+def _all_encounters(
+    problem: Problem, routes: Sequence[Route], done: Callable[[int, int], None]
+) -> tuple[Encounter, ...]:
+    """The meetings of all pairs on the routes they take, in the order of the robots."""
+    lanes, clearance = _lanes(problem.robots, routes), problem.workspace.clearance
+    pairs = _candidates(lanes, clearance)
+    encounters: list[Encounter] = []
+    for count, pair in enumerate(pairs, 1):
+        encounters += _encounters(lanes[pair[0]], lanes[pair[1]], clearance)
+        done(count, len(pairs))
+    return tuple(encounters)
+
+
+def _encounters(ego: _Lane, other: _Lane, clearance: float) -> list[Encounter]:
     """All places where a pair can be too near, in the order in which the first of them comes there."""
-    i, k = pair
-    ego, other = lanes[i], lanes[k]
-    shape, place = ego.robot.footprint, other.robot.footprint
-    regions = conflict_regions(
-        ego.chords,
-        other.chords,
-        shape.margin + place.margin + clearance,
-        conflict_core(shape.core, place.core),
-        start_free=(i, k, "start") not in blocked,
-        goal_free=(i, k, "goal") not in blocked,
-    )
+    shape, beside = ego.robot.footprint, other.robot.footprint
+    distance, core = shape.margin + beside.margin + clearance, conflict_core(shape.core, beside.core)
+    regions = conflict_regions(ego.chords, other.chords, distance, core)
     return sorted((_encounter(ego, other, region) for region in regions), key=lambda one: one.stretches)
 
 

@@ -16,7 +16,7 @@ from coord.cli.app import BAD_INPUT, MOST_FAULTS, app, complain
 __all__ = ["MOST_FAULTS", "RESERVED", "main", "planning", "plans", "problems"]
 
 #: Commands whose names are taken and that later work brings.
-RESERVED: Final = ("view", "edit", "study", "compare", "new", "explain")
+RESERVED: Final = ("view", "edit", "study", "compare", "new")
 
 
 def main() -> None:

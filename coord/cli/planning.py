@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,11 +20,9 @@ from coord.cli.app import (
     print_table,
     say,
 )
-from coord.errors import BadFileError, Fault, InvalidValueError
+from coord.cli.options import options_of
 
 if TYPE_CHECKING:
-    from coord.model.options import Options
-    from coord.model.problem import Problem
     from coord.model.result import Result
 
 
@@ -80,7 +77,7 @@ def plan(
     from coord.reading.problem_file import read_problem
 
     read = read_problem(problem)
-    options = _options(
+    options = options_of(
         problem,
         read,
         method=method,
@@ -128,24 +125,3 @@ def _draw(folder: Path, result: Result) -> list[Path]:
     for kind, data in pictures.items():
         files.write(folder / f"{kind}.png", data)
     return [folder / f"{kind}.png" for kind in pictures]
-
-
-def _options(file: Path, problem: Problem, **flags: object) -> Options:
-    """The options of the file, overruled by the flags that were given; faults say which of the two is wrong."""
-    from coord.model.options import Options
-
-    given = {name: value for name, value in flags.items() if value is not None}
-    table = {name: value for name, value in problem.options.items() if name != "plots"}
-    unknown = table.keys() - flags.keys()
-    if unknown:
-        raise BadFileError(Fault(str(file), None, "[plan]", f"unknown option {name}") for name in sorted(unknown))
-    merged: Mapping[str, Any] = {**table, **given}
-    try:
-        return Options(**merged)
-    except InvalidValueError as error:
-        raise BadFileError(
-            Fault("coord", None, f"--{name.replace('_', '-')}", text)
-            if name in given
-            else Fault(str(file), None, "[plan]", text)
-            for name, text in error.faults
-        ) from error

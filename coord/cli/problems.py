@@ -1,4 +1,4 @@
-"""Commands about problems: ``coord import``."""
+"""Commands about problems: ``coord explain``, ``coord import``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,40 @@ from typing import Annotated
 
 import typer
 
-from coord.cli.app import OK, command, note
+from coord.cli.app import NO_PLAN, OK, Json, ProblemFile, command, note, print_json, say
+from coord.cli.options import options_of
+
+
+@command()
+def explain(
+    problem: ProblemFile,
+    shape: Annotated[
+        str | None, typer.Option(metavar="NAME", help="How paths bend: fitted, exponential, taut or follow.")
+    ] = None,
+    keep_paths: Annotated[
+        bool | None, typer.Option("--keep-paths/--re-route", help="Let no robot go round the others' starts and goals.")
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Tell the story of PROBLEM before it is planned.
+
+    Each robot's way and what the other side would cost, who meets whom, who must go before whom, and which order
+    follows. Exit code 1 where there will be no plan.
+    """
+    from coord.explain import explain as tell
+    from coord.output.explanation import record, text
+    from coord.output.progress import progress
+    from coord.reading.problem_file import read_problem
+
+    read = read_problem(problem)
+    options = options_of(problem, read, shape=shape, keep_paths=keep_paths)
+    with progress() as show:
+        story = tell(read, options, show)
+    if as_json:
+        print_json(record(story))
+    else:
+        say(text(story))
+    return NO_PLAN if story.diagnoses else OK
 
 
 @command("import")

@@ -43,7 +43,7 @@ def plan_of(
     )
     bound = math.fsum(one.solo_bound for one in egos)
     arcs = tuple(arc_of(problem.robots, block) for block in found.blocks)
-    rerouted = tuple(_reroute(problem, quickest[i], found, i) for i in found.around)
+    rerouted = tuple(reroute_record(problem, quickest[i], found, i) for i in found.around)
     return Plan(problem, records, tuple(names[i] for i in order), arcs, bound, "solo_bound", rerouted)
 
 
@@ -68,7 +68,8 @@ def _why(driver: Robot, which: str) -> str:
     return diagnose.given(driver.name) if driver.path else diagnose.no_way_round(driver.name)
 
 
-def _reroute(problem: Problem, before: Route, found: Rerouting, i: int) -> Reroute:
+def reroute_record(problem: Problem, before: Route, found: Rerouting, i: int) -> Reroute:
+    """What re-routing changed for robot i, whose own route was ``before``."""
     blocks, members = found.around[i]
     robots, after = problem.robots, found.routes[i]
     name, arcs = robots[i].name, tuple(arc_of(robots, block) for block in blocks)

@@ -120,6 +120,8 @@ class _Router:
             raise NoPlanError([self._nowhere()])
         blockers = self.ways.blockers()
         base = self._candidate(passed(legs, blockers), legs)
+        if base is None:
+            raise NoPlanError([no_way.no_room_to_turn(robot)])
         if not blockers:
             shape = _used(self.shape, base.shaped) if base.bones.turns else "straight"
             return Route(base.shaped.path, base.alone, shape, "", base.bones.length, (), *_extras(base))
@@ -140,8 +142,9 @@ class _Router:
             elif isinstance(legs, NoWay):
                 reason = no_way.on_side(self.problem, self.ground, blockers, NAMES[side])
                 ways.append(Way(NAMES[side], None, None, reason=reason))
+            elif (one := base if legs is base.legs else self._candidate(sides, legs)) is None:
+                ways.append(Way(NAMES[side], None, None, reason=no_way.no_room_to_turn(robot).text))
             else:
-                one = base if legs is base.legs else self._candidate(sides, legs)
                 ways.append(Way(NAMES[side], one.shaped.path.length, one.alone.arrival, one.shaped.path))
                 found.append(one)
         if not found:
@@ -163,7 +166,8 @@ class _Router:
                 legs = self.ways.shortest(blockers, sides, longest)
                 found += [] if isinstance(legs, NoWay) else [(sides, legs)]
         found.sort(key=lambda way: math.fsum(leg.length for leg in way[1]))
-        return [self._candidate(sides, legs) for sides, legs in found[:_MOST_CHANGED]]
+        candidates = [self._candidate(sides, legs) for sides, legs in found[:_MOST_CHANGED]]
+        return [one for one in candidates if one is not None]
 
     def _longest(self, base: _Candidate, found: Sequence[_Candidate]) -> float:
         """The length [m] from which on a way cannot be quicker than the best so far.
@@ -174,11 +178,12 @@ class _Router:
         slack = _quickest(found).alone.arrival - rest_to_rest(length, limits).arrival
         return length + slack * limits.speed
 
-    def _candidate(self, sides: tuple[int, ...], legs: Sequence[Skeleton]) -> _Candidate:
+    def _candidate(self, sides: tuple[int, ...], legs: Sequence[Skeleton]) -> _Candidate | None:
+        """A way as a path; None where there is no room to turn at a place to pass."""
         limits, bones = self.robot.limits, joined(legs)
         shaped = _shaped(self.shape, bones, limits, self.floor, is_direct=len(self.places) == 2)
         if shaped is None:
-            raise NoPlanError([no_way.no_room_to_turn(self.robot)])
+            return None
         return _Candidate(sides, legs, bones, shaped, fastest(shaped.path, limits))
 
     def _following(self) -> Route:
