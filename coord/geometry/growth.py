@@ -20,6 +20,9 @@ from coord.model.arrays import Array
 from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
 
+#: Corners lose directions to so many neighbours on either side, all but a hair [rad].
+_NEIGHBOURS, _TRIM_SLACK = 12, 1e-6
+
 #: Cores with more vertices are halved until no part has more.
 _MOST_VERTICES = 64
 
@@ -120,7 +123,7 @@ def grow(
     xmin, ymin, xmax, ymax = bounds
     box = (xmin - left + reach, ymin - lower + reach, xmax - right - reach, ymax - upper - reach)
     siblings = np.array(owners + list(range(len(owners), len(parts))), dtype=np.intp)
-    return Grown(parts, rho, outlines.corners(), edges, edge_parts, _touching(parts, siblings), box)
+    return Grown(parts, rho, outlines.corners(rho), edges, edge_parts, _touching(parts, siblings), box)
 
 
 def _check_outlines(obstacles: Sequence[Obstacle]) -> None:
@@ -231,13 +234,39 @@ class _Outlines:
         """Segments (n, 4) and their parts."""
         return np.hstack([self.points, self.points[self.following]]), self.parts
 
-    def corners(self) -> Corners:
+    def corners(self, rho: Array) -> Corners:
         """The convex vertices with the cones of their outward normals."""
         along = self.points[self.following] - self.points
         before = along[self.preceding]
         turn = np.arctan2(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0], (before * along).sum(axis=1))
         first = np.arctan2(-before[:, 0], before[:, 1])  # outward normal: the edge turned clockwise
         alone = self.following == np.arange(len(self.points))
-        turn, first = np.where(alone, 2 * np.pi, turn), np.where(alone, 0.0, first)
-        convex = turn > 1e-12
-        return Corners(self.points[convex], first[convex], turn[convex], self.parts[convex])
+        convex = np.flatnonzero((turn > 1e-12) & ~alone)
+        first, span = self._trimmed(convex, first[convex], turn[convex], rho[self.parts[convex]])
+        left = span > 1e-12
+        rows = np.sort(np.concatenate([convex[left], np.flatnonzero(alone)]))
+        whole_first, whole_span = np.zeros(len(alone)), np.full(len(alone), 2 * np.pi)
+        whole_first[convex[left]], whole_span[convex[left]] = first[left], span[left]
+        return Corners(self.points[rows], whole_first[rows], whole_span[rows], self.parts[rows])
+
+    def _trimmed(self, rows: npt.NDArray[np.intp], first: Array, span: Array, rho: Array) -> tuple[Array, Array]:
+        """Cones without the directions at their ends in which a neighbour along the outline is nearer than rho.
+
+        A round or slanted wall on a grid is a staircase, whose corners keep a sliver of their directions each.
+        """
+        low, high = np.zeros(len(rows)), span.copy()
+        for step in (self.following, self.preceding):
+            other = step[rows]
+            for _ in range(_NEIGHBOURS):
+                gap = self.points[other] - self.points[rows]
+                far = np.hypot(gap[:, 0], gap[:, 1])
+                near = (far > 0) & (far < 2 * rho)
+                half = np.arccos(np.clip(far / np.where(near, 2 * rho, np.inf), 0.0, 1.0)) - _TRIM_SLACK
+                begin = (np.arctan2(gap[:, 1], gap[:, 0]) - half - first) % (2 * np.pi)
+                end = begin + 2 * half
+                # the blocked stretch, and the same a turn earlier, as seen from the cone's first direction
+                for a, b in ((begin, end), (begin - 2 * np.pi, end - 2 * np.pi)):
+                    low = np.where(near & (a <= low) & (b > low), b, low)
+                    high = np.where(near & (a < high) & (b >= high), a, high)
+                other = step[other]
+        return first + low, high - low

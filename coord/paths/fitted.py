@@ -31,6 +31,9 @@ _SHARE, _OTHER_SHARES = 0.5, (0.0, 1.0)
 #: Radii tried for a turn: this many, evenly spaced in the logarithm up to the one that needs no slowing down.
 _RADII = 6
 
+#: Turns up to which it pays to begin at the back, too.
+_FEW = 10
+
 #: Rounds over all turns.
 _ROUNDS = 2
 
@@ -48,7 +51,7 @@ def fitted(skeleton: Skeleton, limits: Limits, floor: Floor) -> Path | None:
     """The quickest path found along a skeleton that keeps the floor's distances; None where ``taut`` finds none.
 
     Where turns compete for room, the first to be widened takes it: the turns are gone through from the front, and
-    once more from the back.
+    if they are few once more from the back.
     """
     if not skeleton.turns:
         return straight(skeleton.start, skeleton.goal)
@@ -60,7 +63,7 @@ def fitted(skeleton: Skeleton, limits: Limits, floor: Floor) -> Path | None:
     ideal = rest_to_rest(skeleton.length, limits).arrival * (1 + _GOOD_ENOUGH)
     bends = Bends(skeleton, [Bend(max(turn.radius, SMALLEST_RADIUS) + AIR, 0.0) for turn in skeleton.turns])
     for forward in (True, False):
-        if bends.fits and best[0] > ideal and (forward or len(bends.bends) > 1):
+        if bends.fits and best[0] > ideal and (forward or 1 < len(bends.bends) <= _FEW):
             found = _widened(bends, start, ideal, forward, limits, clock, floor)
             best = min(best, found, key=lambda one: one[0])
     return best[1]
@@ -76,22 +79,31 @@ def _widened(
     floor: Floor,
 ) -> tuple[float, Path]:
     """Time and path after all turns were gone through, one way or the other, until nothing changes."""
+    worth: set[int] | None = None  # the turns beside one that changed; None: all
     for _ in range(_ROUNDS):
-        before = best[0]
+        changed: set[int] | None = set()
         done = 0
         while done < len(bends.bends) and best[0] > ideal:
             k = done if forward else len(bends.bends) - 1 - done
+            done += 1
+            if worth is not None and k not in worth:
+                continue
             count = len(bends.bends)
             for trying_radii in (True, False):
                 candidates = _candidates(bends, k, limits, trying_radii)
                 found = _quickest(bends, k, candidates, best[0] * (1 - _LEAST_GAIN), clock, floor)
-                if found is not None:
-                    time, bends, path = found
-                    best = (time, path)
+                if found is None:
+                    continue
+                time, bends, path = found
+                best = (time, path)
+                if changed is not None:
+                    changed |= {k - 1, k + 1}
                 if len(bends.bends) < count:  # a corner is passed clear of now: the places of the others have changed
+                    changed, worth = None, None
+                    done -= 1
                     break
-            done += len(bends.bends) == count
-        if best[0] == before:
+        worth = changed
+        if worth is not None and not worth:
             break
     return best
 

@@ -35,6 +35,9 @@ from coord.paths.skeleton import NoWay, Skeleton
 from coord.paths.taut import taut
 from coord.solvers.jerk import rest_to_rest
 
+#: Among more obstacles on the straight line than this, changing the side of one gains next to nothing.
+_FEW = 4
+
 #: Of the ways that pass one obstacle on the other side than the shortest, so many are looked at, the shortest first.
 _MOST_CHANGED = 2
 
@@ -160,7 +163,7 @@ class _Router:
     def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: _Candidate) -> list[_Candidate]:
         """The shortest ways that pass one blocker on the other side than the shortest, if they might be quicker."""
         longest, found = self._longest(base, [best]), []
-        for k in range(len(blockers)):
+        for k in range(len(blockers) if len(blockers) <= _FEW else 0):
             sides = (*base.sides[:k], -base.sides[k], *base.sides[k + 1 :])
             if len(set(sides)) > 1:
                 legs = self.ways.shortest(blockers, sides, longest)

@@ -27,10 +27,10 @@ from coord.tolerances import PLANNING_MARGIN
 _SIBLINGS = 4
 
 #: Parts this near to a segment that hits something take part, too: a share of the size of what it hits.
-_BESIDE = 0.5
+_BESIDE = 0.25
 
 #: Tangents from one place that are tested at once; the rest waits until the search comes to them.
-_BATCH = 8
+_BATCH = 16
 
 #: [m] A way is not shorter than another by less than this.
 _SAME_LENGTH = 1e-12

@@ -148,17 +148,22 @@ class TangentGraph:
         with np.errstate(divide="ignore", invalid="ignore"):
             a = (side * radius - to_sides * to_radius) / far
         index = np.flatnonzero((far > 0) & (np.abs(a) <= 1.0 + 1e-12))
-        a, D, far, sides = np.clip(a[index], -1.0, 1.0), D[index], far[index], to_sides[index]
-        n = (a[:, None] * D - np.sqrt(1 - a * a)[:, None] * np.stack([-D[:, 1], D[:, 0]], axis=1)) / far[:, None]
-        nodes = np.where(index + known == len(self.radius), END, index + known)
-        leaving, arriving = np.arctan2(side * n[:, 1], side * n[:, 0]), np.arctan2(sides * n[:, 1], sides * n[:, 0])
+        a = np.clip(a[index], -1.0, 1.0)
+        x, y = (D[index] / far[index, None]).T
+        across = np.sqrt(1 - a * a)
+        n, sides = np.stack([a * x + across * y, a * y - across * x], axis=1), to_sides[index]
+        # few tangents fit the directions that both corners allow: what comes next is only done for those
+        arriving = np.arctan2(sides * n[:, 1], sides * n[:, 0])
         fits = _in_cone(arriving, to_first[index], to_span[index])
-        if node != END:
-            fits &= _in_cone(leaving, self.first[node], self.span[node])
+        index, n, sides, arriving = index[fits], n[fits], sides[fits], arriving[fits]
+        leaving = np.arctan2(side * n[:, 1], side * n[:, 0])
         ends = to_places[index] + (sides * to_radius[index])[:, None] * n
         xmin, ymin, xmax, ymax = self.floor.grown.box
         x, y = ends.T
-        fits &= (x >= xmin - 1e-9) & (x <= xmax + 1e-9) & (y >= ymin - 1e-9) & (y <= ymax + 1e-9)
+        fits = (x >= xmin - 1e-9) & (x <= xmax + 1e-9) & (y >= ymin - 1e-9) & (y <= ymax + 1e-9)
+        if node != END:
+            fits &= _in_cone(leaving, self.first[node], self.span[node])
+        nodes = np.where(index + known == len(self.radius), END, index + known)
         starts, ends = (center + (side * radius) * n)[fits], ends[fits]
         lengths, left = np.hypot(*(ends - starts).T), np.hypot(*(self.goal - ends).T)
         untested = np.full(len(starts), _UNTESTED)
