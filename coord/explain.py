@@ -23,7 +23,7 @@ from coord.coordination.blocking import arc_of, find_blocks
 from coord.coordination.order import topological_order, urgency
 from coord.coordination.records import reroute_record, unopened
 from coord.coordination.rerouting import Rerouting, reroute
-from coord.errors import InvalidValueError, NoPlanError
+from coord.errors import NoPlanError
 from coord.geometry.clusters import names_of
 from coord.geometry.growth import Grown, grow
 from coord.model.arrays import Point
@@ -125,16 +125,8 @@ def explain(
     ----------
     options : shape, order and keep_paths are used; the others concern the plan itself.
     progress : called with a stage's name, how much of it is done, and how much there is.
-
-    Raises
-    ------
-    InvalidValueError
-        When the problem asks for something that is not supported yet.
     """
     options = options or Options()
-    if problem.workspace.after_arrival != "stay":
-        text = f'after_arrival "{problem.workspace.after_arrival}" is not supported yet'
-        raise InvalidValueError([("after_arrival", text)])
     progress = progress or (lambda stage, done, total: None)
     trips = _trips(problem, options.shape, lambda done: progress("paths", done, len(problem.robots)))
     lost = tuple(trip.diagnosis for trip in trips if trip.diagnosis is not None)
@@ -239,7 +231,7 @@ def _rerouting(
     """Who blocks whom, and who leaves its quickest route for that."""
     paths, clearance = [route.path for route in quickest], problem.workspace.clearance
     pairs = _candidates(_lanes(problem.robots, quickest), clearance)
-    blocks = find_blocks(problem.robots, paths, pairs, clearance)
+    blocks = find_blocks(problem.robots, paths, pairs, clearance, stay=problem.workspace.after_arrival == "stay")
     return reroute(problem, quickest, blocks, options.shape, keep_paths=options.keep_paths, done=done)
 
 

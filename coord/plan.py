@@ -13,7 +13,7 @@ from coord.coordination.order import topological_order, urgency
 from coord.coordination.prioritised import plan_in_order, scene_of
 from coord.coordination.records import plan_of, unopened
 from coord.coordination.rerouting import reroute
-from coord.errors import InvalidValueError, NoPlanError
+from coord.errors import NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
 from coord.model.result import Clearance, Diagnosis, Plan, Result
@@ -44,14 +44,10 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     Raises
     ------
     InvalidValueError
-        When the problem asks for something that is not supported yet.
+        When the outline of an obstacle crosses itself, which the reader of problem files would have told.
     """
     began = time.perf_counter()
     options = options or Options()
-    if problem.workspace.after_arrival != "stay":
-        raise InvalidValueError(
-            [("after_arrival", f'after_arrival "{problem.workspace.after_arrival}" is not supported yet')]
-        )
 
     def time_is_up() -> bool:
         return options.time_limit is not None and time.perf_counter() - began > options.time_limit
@@ -82,7 +78,7 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
     found = reroute(
         problem,
         quickest,
-        find_blocks(robots, paths, pairs, clearance),
+        find_blocks(robots, paths, pairs, clearance, stay=problem.workspace.after_arrival == "stay"),
         options.shape,
         keep_paths=options.keep_paths,
         done=lambda done, rings: progress("ways round", done, rings),

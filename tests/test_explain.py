@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import coord.explain
-from coord.errors import InvalidValueError, NoPlanError
+from coord.errors import NoPlanError
 from coord.explain import explain
 from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, rectangle
@@ -253,10 +253,3 @@ def test_progress_is_told_for_paths_and_meetings_up_to_all_of_them():
         steps = [(done, total) for name, done, total in seen if name == stage]
         assert steps[-1][0] == steps[-1][1]
         assert [done for done, _ in steps] == sorted(done for done, _ in steps)
-
-
-def test_what_is_not_supported_yet_is_refused_as_by_the_plan():
-    """Robots that leave on arrival."""
-    problem = scene(robot("red", *ACROSS), workspace=replace(FLOOR, after_arrival="leave"))
-    with pytest.raises(InvalidValueError, match="not supported yet"):
-        explain(problem)

@@ -63,16 +63,21 @@ def is_blocked(path: Path, block: Block, robots: Sequence[Robot], clearance: flo
 
 
 def find_blocks(
-    robots: Sequence[Robot], paths: Sequence[Path], pairs: Sequence[tuple[int, int]], clearance: float
+    robots: Sequence[Robot],
+    paths: Sequence[Path],
+    pairs: Sequence[tuple[int, int]],
+    clearance: float,
+    *,
+    stay: bool = True,
 ) -> list[Block]:
-    """The whole graph, from the candidate pairs, in their order."""
+    """The whole graph, from the candidate pairs, in their order; robots that do not ``stay`` have no goal to park at."""
     others: list[list[int]] = [[] for _ in robots]
     for i, k in pairs:
         others[i].append(k)
         others[k].append(i)
     found: list[Block] = []
     for i, path in enumerate(paths):
-        places = [Block(k, i, at) for k in others[i] for at in ("start", "goal")]
+        places = [Block(k, i, at) for k in others[i] for at in (("start", "goal") if stay else ("start",))]
         found += blocks_among(places, path, robots, clearance)
     return sorted(found, key=in_order)
 

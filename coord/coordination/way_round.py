@@ -29,13 +29,14 @@ class Rests:
     """All places where robots of a problem rest, twice as many as robots: starts and goals in turn.
 
     ``places`` : (2 n, 2) [m]; ``reaches`` : (2 n,) [m], how far the resting robot and the clearance reach;
-    ``bodies`` : the robots there, as obstacles.
+    ``bodies`` : the robots there, as obstacles; ``used`` : (2 n,), false for goals where nobody stays.
     """
 
     problem: Problem
     places: Array
     reaches: Array
     bodies: tuple[Obstacle, ...]
+    used: npt.NDArray[np.bool_]
 
     def block(self, index: int, driving: int) -> Block:
         """A place that is in the way of a robot."""
@@ -46,7 +47,7 @@ class Rests:
         robots, at = self.problem.robots, path.point(path.breaks)
         # a piece lies within half its length of its ends: looked at first, so that few places need a closer look
         room = self.reaches + robots[driving].footprint.radius + float(path.pieces[:, 0].max(initial=0.0)) / 2
-        near = np.flatnonzero(_inside(self.places, at.min(axis=0), at.max(axis=0), room)).tolist()
+        near = np.flatnonzero(self.used & _inside(self.places, at.min(axis=0), at.max(axis=0), room)).tolist()
         places = [self.block(k, driving) for k in near if k // 2 != driving]
         return blocks_among(places, path, robots, self.problem.workspace.clearance)
 
@@ -72,6 +73,7 @@ def rests(problem: Problem) -> Rests:
         frozen([place for robot in robots for place in (robot.start, robot.goal)], 2),
         frozen(np.repeat(reaches, 2)),
         tuple(bodies[place, robot.footprint] for robot in robots for place in (robot.start, robot.goal)),
+        np.tile([True, problem.workspace.after_arrival == "stay"], len(robots)),
     )
 
 
@@ -81,7 +83,7 @@ def way_round(known: Rests, driving: int, route: Route, allowed: Set[Block], sha
     Places far from its present route are only looked at when the way runs over one of them.
     """
     problem, robot = known.problem, known.problem.robots[driving]
-    avoided = np.ones(len(known.places), dtype=np.bool_)
+    avoided = known.used.copy()
     avoided[[2 * driving, 2 * driving + 1, *(2 * block.resting + (block.at == "goal") for block in allowed)]] = False
     ends = np.vstack([route.path.point(route.path.breaks), [robot.start, robot.goal]])
     room = _ROOM * float(np.ptp(ends, axis=0).max())

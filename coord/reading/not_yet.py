@@ -22,7 +22,6 @@ class NotYet(NamedTuple):
 
 
 NOT_YET: tuple[NotYet, ...] = (
-    NotYet("workspace", "after_arrival", 'after_arrival = "leave"', lambda value: value == "leave"),
     NotYet("map", "origin", "a map that is turned (origin's third number is not 0)", lambda pose: pose[2] != 0),
     NotYet("map", "mode", 'a mode other than "trinary"', lambda mode: mode != "trinary"),
 )

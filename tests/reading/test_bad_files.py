@@ -252,7 +252,6 @@ WORKSPACES = [
     ),
     ("bounds = [0, 0, 10, 10]\nclearance = -0.1", 4, "clearance must be >= 0 m (got -0.1)"),
     ('bounds = [0, 0, 10, 10]\nafter_arrival = "go"', 4, 'after_arrival must be "stay" or "leave" (got "go")'),
-    ('bounds = [0, 0, 10, 10]\nafter_arrival = "leave"', 4, 'after_arrival = "leave" is not supported yet'),
     (
         "bounds = [0, 0, 10, 10]\nresolution = 1",
         4,

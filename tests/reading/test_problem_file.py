@@ -63,18 +63,18 @@ def test_the_digest_is_that_of_the_bytes_of_the_files(read, good):
 
 
 def test_all_faults_come_at_once_from_top_to_bottom(faults_of, good):
-    """Form, rules, names, unsupported fields and places are told in one go, in the order of their lines."""
+    """Form, rules, names and places are told in one go, in the order of their lines."""
     bad = (
         good.replace("seed = 3", 'seed = "x"')
         .replace("speed = 1.5", "speed = -1")
-        .replace('"stay"', '"leave"')
+        .replace('"stay"', '"vanish"')
         .replace('"blue"', '"red"')
         .replace("start = [3.0, 1.0]", "start = [5.0, 4.5]")
         .replace("speed = 0.7", "speed = 0\njerk = true")
         .replace("radius = 1.0", "radius = -1.0")
     )
     assert faults_of(bad) == [
-        'problem.toml:7: [workspace]: after_arrival = "leave" is not supported yet',
+        'problem.toml:7: [workspace]: after_arrival must be "stay" or "leave" (got "vanish")',
         'problem.toml:10: [plan]: seed must be a whole number (got "x")',
         "problem.toml:16: [defaults]: speed must be > 0 m/s (got -1)",
         'problem.toml:27: robots[2] "red": the name is taken by robots[1]; names must differ',
