@@ -70,7 +70,7 @@ def find_blocks(
     *,
     stay: bool = True,
 ) -> list[Block]:
-    """The whole graph, from the candidate pairs, in their order; robots that do not ``stay`` have no goal to park at."""
+    """The whole graph, from the candidate pairs, in their order; who does not ``stay`` has no goal to park at."""
     others: list[list[int]] = [[] for _ in robots]
     for i, k in pairs:
         others[i].append(k)

@@ -69,11 +69,17 @@ def blocked_angles(
     grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
     it is wholly inside or wholly outside, which its middle tells.
     """
-    low, high = np.minimum(edges[:, :2], edges[:, 2:]), np.maximum(edges[:, :2], edges[:, 2:])
-    reach = (rho + radius)[:, None]
-    near = ((low - reach < center) & (center < high + reach)).all(axis=1)
+    x, y = center.tolist()
+    reach = rho + radius
+    (ax, ay, bx, by), (xmin, ymin, xmax, ymax) = edges.T, box
+    near = (np.abs(ax + bx - 2 * x) < np.abs(ax - bx) + 2 * reach) & (
+        np.abs(ay + by - 2 * y) < np.abs(ay - by) + 2 * reach
+    )
+    is_inside = xmin < x - radius and x + radius < xmax and ymin < y - radius and y + radius < ymax
+    if is_inside and not near.any():
+        return np.empty((0, 2))
     edges, rho = edges[near], rho[near]
-    angles = _box_angles(center, radius, box)
+    angles = np.empty(0) if is_inside else _box_angles(center, radius, box)
     if len(edges):
         angles = np.concatenate([_segment_angles(center, radius, edges, rho), angles])
     elif not len(angles):
