@@ -39,6 +39,25 @@ class Blocks:
     sigma0: Array
     sigma: Array  # (n, 2) the arc lengths of the other's chord, cut down to the block's extent
     core: Array  # (k, 2) of all blocks
+    slack: Array  # by how much R may exceed what is truly forbidden
+    ds: Array  # lengths of ego's chords
+
+    def of(self, members: npt.NDArray[np.intp]) -> Blocks:
+        """Some of the blocks."""
+        return Blocks(
+            self.chords[members],
+            self.D[members],
+            self.u[members],
+            self.w[members],
+            self.R[members],
+            self.s0[members],
+            self.s[members],
+            self.sigma0[members],
+            self.sigma[members],
+            self.core,
+            self.slack[members],
+            self.ds[members],
+        )
 
 
 def near_blocks(
@@ -85,6 +104,8 @@ def near_blocks(
         sigma0,
         np.stack([sigma0 + first, sigma0 + last], axis=1),
         corners,
+        (2 * (ego.errors[i] + other.errors[k])) + REGION_MARGIN,
+        ds[keep],
     )
 
 

@@ -32,11 +32,13 @@ class ConflictRegion:
     sigma : (n+1,) array [m], nodes along the other's path, increasing.
     low : (n, 2) array [m], for each cell the values at its two nodes of a line below every forbidden s.
     high : (n, 2) array [m], likewise above. Forbidden is the open interval between the two lines.
+    blocks : what the region consists of, for ``coord.conflicts.inner``; None where that is not known.
     """
 
     sigma: Array
     low: Array
     high: Array
+    blocks: Blocks | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", frozen(self.sigma))
@@ -83,8 +85,9 @@ def _region(blocks: Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:
     if last - first <= SAME_PLACE:  # the other never moves: one row
         low, high, _, _ = slices(blocks, members, np.full(len(members), first))
         low, high = np.maximum(low, blocks.s[members, 0]), np.minimum(high, blocks.s[members, 1])
-        return ConflictRegion(frozen([first, first]), frozen([[low.min()] * 2]), frozen([[high.max()] * 2]))
-    nodes = _nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, members)]), first, last)
+        rows = frozen([first, first]), frozen([[low.min()] * 2]), frozen([[high.max()] * 2])
+        return ConflictRegion(*rows, blocks.of(members))
+    nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, members)]), first, last)
     member, cell = np.nonzero(
         (extent[:, :1] <= (nodes[:-1] + nodes[1:])[None] / 2) & ((nodes[:-1] + nodes[1:])[None] / 2 <= extent[:, 1:])
     )
@@ -93,10 +96,10 @@ def _region(blocks: Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:
     lows, highs = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(lows, cell, low)
     np.maximum.at(highs, cell, high)
-    return ConflictRegion(frozen(nodes), frozen(lows), frozen(highs))
+    return ConflictRegion(frozen(nodes), frozen(lows), frozen(highs), blocks.of(members))
 
 
-def _nodes(given: Array, first: float, last: float) -> Array:
+def cell_nodes(given: Array, first: float, last: float) -> Array:
     """Where cells begin and end: the given places, a grid, and some more near the ends, where bounds are steep."""
     cell = min(REGION_CELL, (last - first) / 8)
     ends = [x + sign * share * cell for x, sign in ((first, 1), (last, -1)) for share in _END_NODES]

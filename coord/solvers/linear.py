@@ -47,17 +47,26 @@ class Cells:
 
 def farthest(cells: Cells, limits: Limits) -> float | None:
     """How far [m] the robot can come to rest at the end of the cells, from rest at 0; None where no motion is found."""
+    way = farthest_way(cells, limits)
+    return None if way is None else float(way[-1, 0])
+
+
+def farthest_way(cells: Cells, limits: Limits) -> Array | None:
+    """States (N+1, 3) at the knots of the motion that comes to rest as far away as can be, if one is found."""
     solution = _solve(cells, limits, None)
-    return None if solution is None else float(solution[-3])
+    return None if solution is None else np.append(solution, 0.0).reshape(-1, 4)[:, :3].copy()
 
 
-def smoothest(cells: Cells, limits: Limits, length: float) -> Array | None:
-    """Jerks (N,) of the motion from rest at 0 to rest at ``length`` with the least squared jerk, if one is found."""
-    solution = _solve(cells, limits, length)
+def smoothest(cells: Cells, limits: Limits, length: float, ease: float = 0.0) -> Array | None:
+    """Jerks (N,) of the motion from rest at 0 to rest at ``length`` with the least squared jerk, if one is found.
+
+    ``ease`` : weight [1/s2] of the squared acceleration beside the squared jerk.
+    """
+    solution = _solve(cells, limits, length, ease)
     return None if solution is None else solution[:-3].reshape(-1, 4)[:, 3].copy()
 
 
-def _solve(cells: Cells, limits: Limits, length: float | None) -> Array | None:
+def _solve(cells: Cells, limits: Limits, length: float | None, ease: float = 0.0) -> Array | None:
     """Unknowns s, v, a, j for each cell, then the last s, v, a."""
     n = len(cells.h)
     low, high = _variable_bounds(cells, limits, length)
@@ -71,6 +80,7 @@ def _solve(cells: Cells, limits: Limits, length: float | None) -> Array | None:
         gradient[-3] = -1.0
     else:
         weight[3:-3:4] += cells.h
+        weight[2:-3:4] += ease * cells.h
     solution = solver(
         h=casadi.DM(h_pattern, weight),
         g=gradient,

@@ -5,9 +5,14 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 
+import numpy as np
+
 from coord.alone.fastest import fastest, solo_bound
+from coord.alone.inverse import time_at
 from coord.alone.ramp import Ramp, landing, launch
+from coord.alone.relaxed import without_jerk
 from coord.alone.speed_limit import SpeedLimit, speed_limit
+from coord.model.arrays import Array
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Robot
@@ -22,6 +27,7 @@ class Ego:
     alone : its quickest profile with nobody else, departing at the release time.
     solo_bound : time [s] that no profile can beat, release included.
     launch, landing : ramps that bound how early it can be somewhere and how long it still needs.
+    relaxed : its quickest motion with the jerk forgotten, from t = 0: between any two places it needs that time.
     """
 
     robot: Robot
@@ -31,6 +37,7 @@ class Ego:
     solo_bound: float
     launch: Ramp
     landing: Ramp
+    relaxed: VelocityProfile
 
     @property
     def length(self) -> float:
@@ -45,5 +52,16 @@ def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
     caps = speed_limit(path, limits)
     # no cap is reached anywhere on a path of bends only: the ramps may use the highest cap there is
     top = dataclasses.replace(limits, speed=max(caps.caps.tolist(), default=limits.speed))
+    relaxed = without_jerk(path, limits)
     bound = robot.release + solo_bound(path, limits)
-    return Ego(robot, path, caps, alone, min(bound, alone.arrival), launch(top), landing(top))
+    return Ego(robot, path, caps, alone, min(bound, alone.arrival), launch(top), landing(top), relaxed)
+
+
+def earliest(one: Ego, s: Array) -> Array:
+    """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]."""
+    return one.alone.departure + np.maximum(one.launch.time(s), time_at(one.relaxed, s))
+
+
+def still_needed(one: Ego, s: Array) -> Array:
+    """The least times (m,) [s] that it still needs from the arc lengths s (m,) [m] to rest at its goal."""
+    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - time_at(one.relaxed, s))

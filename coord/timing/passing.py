@@ -15,16 +15,21 @@ import numpy as np
 from coord.alone.check import keeps_limits
 from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
+from coord.timing.bounds import Claim, are_compatible, could_hold_up, inner_claims, least_arrival, window_claim
 from coord.timing.delay import Contact, after_contact, before_contact, start_delay
 from coord.timing.ego import Ego
+from coord.timing.gentle import gentle
 from coord.timing.meeting import Meeting, first_violated
-from coord.timing.program import Tube, through_tube
-from coord.timing.splice import spliced
-from coord.timing.tube import after_bound, before_bound
+from coord.timing.program import through_tube
+from coord.timing.splice import delayed_course, spliced
+from coord.timing.tube import Tube, after_bound, before_bound
 from coord.tolerances import OPTIMAL
 
 #: [s] With so much less delay, the window that a delay is for is violated.
 _A_LITTLE = 1e-3
+
+#: [1] Bounds that lack more than this share of the arrival are worth some time.
+_NEARLY = 1e-3
 
 #: Subproblems looked at for one robot before the best profile found is taken as it is.
 MOST_NODES = 60
@@ -38,6 +43,7 @@ class Timing:
     ----------
     after, before : indices of the other robots that it lets pass, and that it precedes, where they meet.
     how : "alone", "start delay", "splice" or "program".
+    lower_bound : arrival [s] that no motion can beat, given the motions of those before it.
     nodes : subproblems looked at; ``open`` : whether the search ended with some undecided.
     """
 
@@ -45,6 +51,7 @@ class Timing:
     after: tuple[int, ...]
     before: tuple[int, ...]
     how: str
+    lower_bound: float = 0.0
     nodes: int = 0
     open: bool = False
 
@@ -59,6 +66,12 @@ class _Search:
     how: str
     afters: dict[int, Contact] = field(default_factory=dict)
     befores: dict[int, Contact] = field(default_factory=dict)
+    claims: dict[int, Claim] = field(default_factory=dict)
+
+    @property
+    def known(self) -> set[int]:
+        """The meetings that came up."""
+        return {*self.afters, *self.befores, *self.claims}
 
     def window(self, index: int) -> Window:
         return self.meetings[index].window
@@ -73,12 +86,17 @@ class _Search:
             self.befores[index] = before_contact(self.ego.alone, self.window(index))
         return self.befores[index]
 
+    def claim(self, index: int) -> Claim:
+        if index not in self.claims:
+            self.claims[index] = window_claim(self.ego, self.window(index))
+        return self.claims[index]
+
     def take(self, profile: VelocityProfile, how: str) -> None:
         if profile.arrival < self.best.arrival:
             self.best, self.how = profile, how
 
 
-def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False) -> Timing | None:
+def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False, profile: str = "fastest") -> Timing | None:
     """The quickest profile found for ego that is clear of all meetings.
 
     None where even waiting at the start does not help, because another robot never leaves ego's way; with
@@ -86,20 +104,27 @@ def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False) -> T
 
     Parameters
     ----------
+    profile : "fastest": as early as possible; "gentle": a delayed robot may arrive a little later where it then
+        drives more smoothly.
     is_last : nobody planned later can meet ego. Then it may roll and slow down instead of waiting at its
         start. Done by everybody, this was measured to cost those who come later more than it gains.
     """
     violated = first_violated(meetings, ego.alone)
     if violated is None:
-        return _finished(ego.alone, meetings, "alone", 0, False)
+        return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
     delayed = start_delay(ego.alone, meetings)
     if delayed is None:
         return None
     search = _Search(ego, meetings, delayed, "start delay")
     nodes, is_open = _branch_and_bound(search)
+    bound = _certified(search)
+    if profile == "gentle":
+        calm = gentle(ego, meetings, search.best, sorted(search.known))
+        if calm is not None:
+            return _finished(calm, meetings, "gentle", bound, nodes, is_open)
     if search.how == "start delay" and is_last:
         _give_way_on_the_move(search)
-    return _finished(search.best, meetings, search.how, nodes, is_open)
+    return _finished(search.best, meetings, search.how, bound, nodes, is_open)
 
 
 def _give_way_on_the_move(search: _Search) -> None:
@@ -161,51 +186,21 @@ def _bound(search: _Search, chosen: dict[int, bool]) -> float:
     """A time no profile with these choices can beat; infinite where the choices contradict each other.
 
     A window passed after: from each point (t, s) of its bound the robot still needs the landing. A window
-    passed before: even the launch must be there in time. Two windows: speed times the time in between must
-    cover the way from the one passed after to the one passed before.
+    passed before: even the quickest start must be there in time. Two windows: the time in between must suffice
+    for the way from the one passed after to the one passed before.
     """
-    ego = search.ego
-    bound = ego.solo_bound
+    bound = search.ego.solo_bound
+    claims = {index: search.claim(index) for index in chosen}
     for index, passes_after in chosen.items():
-        window = search.window(index)
         if passes_after:
-            bound = max(bound, _after_bound(ego, window))
-        elif not _can_precede(ego, window):
+            bound = max(bound, claims[index].after)
+        elif not claims[index].can_precede:
             return np.inf
     for a in (index for index, passes_after in chosen.items() if passes_after):
         for b in (index for index, passes_after in chosen.items() if not passes_after):
-            if not _compatible(search.window(a), search.window(b), ego.robot.limits.speed):
+            if not are_compatible(claims[a], claims[b]):
                 return np.inf
     return bound
-
-
-def _after_bound(ego: Ego, window: Window) -> float:
-    if window.lasts or float(window.low.min()) < 0:
-        return np.inf
-    times = np.stack([window.times[:-1], window.times[1:]], axis=1)
-    return float((times + ego.landing.time(ego.length - window.low.ravel()).reshape(-1, 2)).max())
-
-
-def _can_precede(ego: Ego, window: Window) -> bool:
-    if float(window.high.max()) > ego.length:
-        return False
-    departure = ego.alone.departure
-    earliest = departure + ego.launch.time(window.high.ravel()).reshape(-1, 2)
-    times = np.stack([window.times[:-1], window.times[1:]], axis=1)
-    return bool(np.all(earliest <= times))
-
-
-def _compatible(after: Window, before: Window, speed: float) -> bool:
-    """Whether full speed suffices from every point of the one bound to every point of the other."""
-    ta, sa = np.stack([after.times[:-1], after.times[1:]], axis=1).ravel(), after.low.ravel()
-    tb, sb = np.stack([before.times[:-1], before.times[1:]], axis=1).ravel(), before.high.ravel()
-    order = np.argsort(ta, kind="stable")
-    ta, sa = ta[order], sa[order]
-    # a point of the one that lies later holds as it is; one that lies earlier lets the robot go on at full speed
-    later = np.append(np.minimum.accumulate(sa[::-1])[::-1], np.inf)
-    earlier = np.append(np.inf, np.minimum.accumulate(sa - speed * ta))
-    count = np.searchsorted(ta, tb, side="left")
-    return bool(np.all(np.minimum(later[count], earlier[count] + speed * tb) >= sb))
 
 
 def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[VelocityProfile | None, str]:
@@ -219,13 +214,12 @@ def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[Ve
     for profile in spliced(ego, afters, befores):
         if _keeps_choices(search, chosen, profile) and keeps_limits(profile, ego.robot.limits, ego.caps):
             return profile, "splice"
-    if not ego.caps.is_constant:
-        return None, ""
     tube = Tube(
         [after_bound(search.window(index)) for index, passes_after in chosen.items() if passes_after],
         [before_bound(search.window(index)) for index, passes_after in chosen.items() if not passes_after],
     )
-    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL))
+    course = None if ego.caps.is_constant else delayed_course(ego, afters, befores)
+    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL), course)
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"
@@ -241,7 +235,27 @@ def _keeps_choices(search: _Search, chosen: dict[int, bool], profile: VelocityPr
     return True
 
 
-def _finished(profile: VelocityProfile, meetings: list[Meeting], how: str, nodes: int, is_open: bool) -> Timing:
+def _certified(search: _Search) -> float:
+    """An arrival that no motion can beat, from what is truly forbidden in the meetings that came up in the search.
+
+    Leaving out a meeting never makes a bound too late. Where these few leave much open, all others are added that
+    could hold ego up for longer.
+    """
+    ego, arrival = search.ego, search.best.arrival
+    claims = [claim for index in sorted(search.known) for claim in inner_claims(ego, search.meetings[index])]
+    bound = max(ego.solo_bound, least_arrival(ego, claims, arrival))
+    if bound >= arrival * (1 - _NEARLY):
+        return bound
+    for index, meeting in enumerate(search.meetings):
+        if index not in search.known and could_hold_up(ego, meeting, bound):
+            claims += inner_claims(ego, meeting)
+    return max(bound, least_arrival(ego, claims, arrival))
+
+
+def _finished(
+    profile: VelocityProfile, meetings: list[Meeting], how: str, lower_bound: float, nodes: int, is_open: bool
+) -> Timing:
     after = {meeting.other for meeting in meetings if meeting.passes_after(profile)}
     before = {meeting.other for meeting in meetings} - after
-    return Timing(profile, tuple(sorted(after)), tuple(sorted(before)), how, nodes, is_open)
+    lower_bound = min(lower_bound, profile.arrival)  # a splice may arrive sooner by its rounding
+    return Timing(profile, tuple(sorted(after)), tuple(sorted(before)), how, lower_bound, nodes, is_open)

@@ -1,4 +1,4 @@
-"""The quickest motion through a tube, by a linear program on a time grid.
+"""The quickest and the smoothest motion through a tube, by linear and quadratic programs on a time grid.
 
 For a fixed arrival the jerk-limited motions inside a tube form a convex set, and arrivals that are possible
 stay possible when they come later. So the program asks how far the robot can get until it rests at a given
@@ -8,8 +8,6 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,18 +16,12 @@ from coord.alone.check import keeps_limits
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
-from coord.solvers.linear import SIZES, Cells, farthest, smoothest
+from coord.solvers.linear import farthest_way, smoothest
 from coord.timing.ego import Ego
+from coord.timing.grid import Course, border_times, cells_in, course_through, time_knots
 from coord.timing.polish import land_exactly
-from coord.timing.tube import Bound, lower_on_cells, upper_on_cells
-from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN
-
-#: First cells after an event of the tube last this share of acceleration / jerk; then they grow.
-_FIRST_CELL = 0.25
-_GROWTH = 1.5
-
-#: [s] Longest cell where no window is, and where one is.
-_LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
+from coord.timing.tube import Tube
+from coord.tolerances import LIMIT_MARGIN
 
 #: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow.
 _MESHES = (1.0, 0.4)
@@ -37,33 +29,60 @@ _MESHES = (1.0, 0.4)
 #: [s] The search for the arrival ends when it rises by less than this.
 _ARRIVAL_STEP = 2e-3
 
-#: [m] The tube is narrowed by this, so that the solver's rounding stays inside.
-_TUBE_MARGIN = 2 * REGION_MARGIN
-
 #: [m] An upper bound below this holds the robot at its start: it departs when the bound has risen above.
 _AT_START = 2e-3
 
+#: The search from above ends after so many arrivals, or when the last ones differ by less than this share.
+_FALLS, _NEAR = 10, 1e-3
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Tube:
-    """Upper bounds (from windows passed after) and lower bounds (from windows passed before)."""
+#: [s] How much earlier than on the last course the robot may enter a bend, at the price of the bend's cap until then.
+_LEADS = (3.0, 0.8, 0.1)
 
-    upper: Sequence[Bound]
-    lower: Sequence[Bound]
+#: Samples of a profile for its course.
+_SAMPLES = 400
+
+#: How often the cells of bends are corrected by the last solution.
+_CORRECTIONS = 2
 
 
-def through_tube(ego: Ego, tube: Tube, least: float, most: float) -> VelocityProfile | None:
+def through_tube(
+    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None
+) -> VelocityProfile | None:
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
 
     ``least`` must not be later than the best arrival there is. The profile keeps the limits (checked
     exactly); whether it is clear of the windows the caller checks. A tight tube may be too narrow for the
     bounds on a coarse grid, so a finer one is tried where the coarse one finds nothing.
+
+    Parameters
+    ----------
+    course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
     """
+    if course is None and not ego.caps.is_constant:
+        return None
     for mesh in _MESHES:
-        profile = _through(_Attempt(ego, tube, _tightened(ego.robot.limits), _departure(ego, tube), mesh), least, most)
+        attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
+        profile = _through(attempt, least, most, course)
         if profile is not None:
             return profile
     return None
+
+
+def smooth_through(
+    ego: Ego, tube: Tube, arrival: float, mesh: float, ease: float = 0.0, course: Course | None = None
+) -> VelocityProfile | None:
+    """The profile through a tube that arrives at a time with the least squared jerk; None where none is found.
+
+    ``ease`` : weight [1/s2] of the squared acceleration beside the squared jerk; ``course`` as for ``through_tube``.
+    """
+    attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
+    best = None
+    for _ in range(1 if ego.caps.is_constant else 1 + _CORRECTIONS):
+        profile = _smooth(attempt, arrival, course, ease)
+        if profile is None:
+            return best
+        best, course = profile, course_of(profile, attempt.departure)
+    return best
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,23 +96,17 @@ class _Attempt:
     mesh: float
 
 
-def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | None:
-    ego = attempt.ego
-    if _reach(attempt, most) < 0:
+def _through(attempt: _Attempt, least: float, most: float, course: Course | None) -> VelocityProfile | None:
+    reached, course = _reach(attempt, most, course)
+    if reached < 0:
         return None
-    arrival = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
-    while True:
-        lack = -_reach(attempt, arrival)
-        step = min(max(lack, 0.0), 10 * ego.length) / attempt.limits.speed
-        if step <= _ARRIVAL_STEP:
-            break
-        arrival += step
-        if arrival > most:
-            arrival = most
-            break
+    if course is None:
+        arrival = _rising(attempt, least, most)
+    else:
+        arrival, course = _falling(attempt, least, most, course)
     for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
-        at = min(arrival + step + pause, most)
-        profile = _smooth(attempt, at)
+        at = min(arrival + pause, most)
+        profile = _smooth(attempt, at, course)
         if profile is not None:
             return profile
         if at == most:
@@ -101,18 +114,72 @@ def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | 
     return None
 
 
-def _reach(attempt: _Attempt, arrival: float) -> float:
-    """How far beyond its goal [m] the robot could rest at the arrival; negative where it cannot get there."""
-    cells = _cells(attempt, arrival)
-    reached = None if cells is None else farthest(cells, attempt.limits)
-    return -np.inf if reached is None else reached - attempt.ego.length
-
-
-def _smooth(attempt: _Attempt, arrival: float) -> VelocityProfile | None:
+def _rising(attempt: _Attempt, least: float, most: float) -> float:
+    """The least arrival on the grid, from below: where metres lack, so many seconds more are needed at least."""
     ego = attempt.ego
-    cells = _cells(attempt, arrival)
-    jerks = None if cells is None else smoothest(cells, attempt.limits, ego.length)
-    if cells is None or jerks is None:
+    arrival = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
+    while True:
+        reached, _ = _reach(attempt, arrival, None)
+        step = min(max(-reached, 0.0), 10 * ego.length) / attempt.limits.speed
+        if arrival + step >= most:
+            return most
+        arrival += step
+        if step <= _ARRIVAL_STEP:
+            return arrival
+
+
+def _falling(attempt: _Attempt, least: float, most: float, course: Course) -> tuple[float, Course]:
+    """An early arrival and its course, from above: only a course that gets there tells which cells are in which bend.
+
+    The robot that gets farthest passes its goal at speed; had it stopped there, it would have arrived about a
+    stop later. That is tried first, then the middle between what is known to do and what is not.
+    """
+    ego, low, arrival = attempt.ego, least, most
+    stop = float(ego.landing.profile.arrival) - ego.landing.profile.length / ego.landing.speed
+    for _ in range(_FALLS):
+        trial = float(course.passes(np.array([ego.length]))[0]) + stop
+        if not low < trial < arrival - _ARRIVAL_STEP:
+            trial = (low + arrival) / 2
+        reached, better = _reach(attempt, trial, course.cut(trial, ego.length))
+        if reached >= 0 and better is not None:
+            arrival, course = trial, better
+        else:
+            low = trial
+        if arrival - low < _NEAR * arrival:
+            break
+    return arrival, course.cut(arrival, ego.length)
+
+
+def _reach(attempt: _Attempt, arrival: float, course: Course | None) -> tuple[float, Course | None]:
+    """How far beyond its goal [m] the robot could rest at the arrival, and the course there on a path with bends.
+
+    Negative where it cannot get there. With bends the last solution tells again which cells are in which bend,
+    as long as that gets the robot farther.
+    """
+    ego, reached = attempt.ego, -np.inf
+    for lead in (0.0,) if course is None else _LEADS:
+        times = _knots(attempt, arrival, course)
+        if times is None:
+            break
+        now = None if course is None else course.until(attempt.departure, arrival)
+        states = farthest_way(cells_in(attempt.tube, times, ego.length, ego.caps, now, lead), attempt.limits)
+        if states is None or states[-1, 0] - ego.length <= reached:
+            continue
+        reached = float(states[-1, 0]) - ego.length
+        course = None if course is None else course_through(times, states)
+    return reached, course
+
+
+def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: float = 0.0) -> VelocityProfile | None:
+    ego = attempt.ego
+    times = _knots(attempt, arrival, course)
+    if times is None:
+        return None
+    if course is not None:
+        course = course.until(float(times[0]), arrival)
+    cells = cells_in(attempt.tube, times, ego.length, ego.caps, course)
+    jerks = smoothest(cells, attempt.limits, ego.length, ease)
+    if jerks is None:
         return None
     profile = land_exactly(cells.h, jerks, ego.length, attempt.departure)
     if profile is None or not keeps_limits(profile, ego.robot.limits, ego.caps):
@@ -120,57 +187,19 @@ def _smooth(attempt: _Attempt, arrival: float) -> VelocityProfile | None:
     return profile
 
 
-def _cells(attempt: _Attempt, arrival: float) -> Cells | None:
-    """The grid up to an arrival with the tube's bounds on it; None where the grid would be too large."""
-    ego, tube, limits = attempt.ego, attempt.tube, attempt.limits
-    times = _grid(attempt, arrival)
-    if times is None:
-        return None
-    n = len(times) - 1
-    upper, lower = np.full((n, 4), np.inf), np.full((n, 4), -np.inf)
-    for bound in tube.upper:
-        np.minimum(upper, upper_on_cells(bound, times, _TUBE_MARGIN), out=upper)
-    for bound in tube.lower:
-        np.maximum(lower, np.minimum(lower_on_cells(bound, times, _TUBE_MARGIN), ego.length), out=lower)
-    return Cells(np.diff(times), upper, lower, np.full(n, limits.speed))
+def _knots(attempt: _Attempt, arrival: float, course: Course | None) -> Array | None:
+    borders = [] if course is None else border_times(attempt.ego.caps, course.until(attempt.departure, arrival))
+    return time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, borders)
 
 
-def _grid(attempt: _Attempt, arrival: float) -> Array | None:
-    """Time knots at the tube's events, dense behind and before each, as many as a size of program has."""
-    limits, departure, bounds = attempt.limits, attempt.departure, (*attempt.tube.upper, *attempt.tube.lower)
-    taken = [(float(bound.times[0]), float(bound.times[-1])) for bound in bounds]
-    events = {departure, arrival, *(t for span in taken for t in span)}
-    knots = sorted(t for t in events if departure <= t <= arrival)
-    shortest = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02) * attempt.mesh
-    times = [departure]
-    for start, end in itertools.pairwise(knots):
-        if end - start < 1e-6:  # two events at once
-            times[-1] = end if len(times) > 1 else times[-1]
-            continue
-        middle = (start + end) / 2
-        longest = (_LONGEST_TAKEN if any(a < middle < b for a, b in taken) else _LONGEST_FREE) * attempt.mesh
-        times += _graded(start, end, min(shortest, longest), longest)
-    size = next((size for size in SIZES if size >= len(times) - 1), None)
-    if size is None:
-        return None
-    while len(times) - 1 < size:
-        k = int(np.argmax(np.diff(times)))
-        times.insert(k + 1, (times[k] + times[k + 1]) / 2)
-    times[-1] = arrival
-    return np.array(times)
+def course_of(profile: VelocityProfile, since: float) -> Course:
+    """The course of a profile, the wait from ``since`` [s] to its departure included."""
+    even = np.linspace(profile.departure, profile.arrival, _SAMPLES)
+    times = np.unique(np.concatenate([[min(since, profile.departure)], profile.times, even]))
+    return Course(times, np.maximum.accumulate(profile.state(times)[:, 0]))
 
 
-def _graded(start: float, end: float, first: float, longest: float) -> list[float]:
-    """Knots after ``start`` up to ``end``: cells grow from both ends towards the middle."""
-    half, sizes = (end - start) / 2, [first]
-    while sum(sizes) < half:
-        sizes.append(min(sizes[-1] * _GROWTH, longest))
-    scale = half / sum(sizes)
-    widths = np.array(sizes + sizes[::-1]) * scale
-    return [*(start + np.cumsum(widths)[:-1]).tolist(), end]
-
-
-def _departure(ego: Ego, tube: Tube) -> float:
+def held_until(ego: Ego, tube: Tube) -> float:
     """The latest time up to which the tube holds the robot at its start."""
     departure = ego.alone.departure
     for bound in tube.upper:
@@ -180,7 +209,8 @@ def _departure(ego: Ego, tube: Tube) -> float:
     return departure
 
 
-def _tightened(limits: Limits) -> Limits:
+def tightened(limits: Limits) -> Limits:
+    """Limits a little below those given, so that the solver's rounding keeps them."""
     share = 1 - LIMIT_MARGIN
     return Limits(
         limits.speed * share,

@@ -6,6 +6,7 @@ window, passing before means s >= W(t) with W nondecreasing from its beginning o
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,19 @@ class Bound:
 
     times: Array
     values: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tube:
+    """Upper bounds (from windows passed after) and lower bounds (from windows passed before)."""
+
+    upper: Sequence[Bound]
+    lower: Sequence[Bound]
+
+    @property
+    def spans(self) -> list[tuple[float, float]]:
+        """When each of the bounds begins and ends [s]."""
+        return [(float(bound.times[0]), float(bound.times[-1])) for bound in (*self.upper, *self.lower)]
 
 
 def after_bound(window: Window) -> Bound:

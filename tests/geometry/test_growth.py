@@ -60,7 +60,14 @@ def test_obstacles_that_touch_become_one_part():
     """Sharing an edge, a corner, or some floor; a circle stays its own part."""
     parts = [rectangle("a", (1, 1, 2, 2)), rectangle("b", (2, 1, 3, 2)), rectangle("c", (2.5, 1.5, 4, 3))]
     assert len(grow(parts, Footprint(0.1), 0.0, BOUNDS).parts) == 1
-    assert len(grow([*parts, rectangle("d", (5, 5, 6, 6)), Circle("e", (1.5, 1.5), 0.1)], Footprint(0.1), 0.0, BOUNDS).parts) == 3
+    assert (
+        len(
+            grow(
+                [*parts, rectangle("d", (5, 5, 6, 6)), Circle("e", (1.5, 1.5), 0.1)], Footprint(0.1), 0.0, BOUNDS
+            ).parts
+        )
+        == 3
+    )
 
 
 def test_an_obstacle_alone_keeps_its_vertices_to_the_last_bit():

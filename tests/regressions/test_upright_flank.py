@@ -18,5 +18,7 @@ def test_a_detour_without_room_for_a_foot_is_fitted_and_says_so(goal: float):
     limits = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
     robot = Robot("r", Footprint(0.3), limits, (2.0, 7.0), (goal, 7.0))
     floor = Workspace((0.0, 0.0, 20.0, 15.0), 0.05)
-    found = plan(Problem("p", floor, (robot,), (rectangle("box", (9.0, 6.0, 11.0, 8.5)),)), Options(shape="exponential"))
+    found = plan(
+        Problem("p", floor, (robot,), (rectangle("box", (9.0, 6.0, 11.0, 8.5)),)), Options(shape="exponential")
+    )
     assert found.certified

@@ -8,9 +8,16 @@ import casadi
 import numpy as np
 import pytest
 
+from coord.conflicts.chords import chords
+from coord.conflicts.region import conflict_regions
+from coord.conflicts.rest import runs_over
 from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
+from coord.paths.routes import find_routes
+from coord.timing.ego import ego
+from coord.timing.meeting import Ends, Meeting
+from coord.timing.passing import time_robot
 
 LARGE = Workspace((-40.0, -40.0, 60.0, 60.0), 0.05)
 
@@ -152,6 +159,72 @@ def _could_arrive(plan, name, arrival, cells=120):
 
 
 @pytest.fixture(scope="session")
+def interval():
+    """(plan-like of ego, of the other, clearance, times) -> forbidden arc lengths of ego on a straight path."""
+    return _interval
+
+
+@pytest.fixture(scope="session")
 def could_arrive():
     """(plan, name, arrival) -> whether a robot could be at its goal by then, by brute force over before and after."""
     return _could_arrive
+
+
+def _timed(problem, profile="fastest"):
+    """All egos and timings of a problem, planned in the order of the file; each robot's meetings as well."""
+    clearance = problem.workspace.clearance
+    egos = [ego(robot, route.path, route.alone) for robot, route in
+            zip(problem.robots, find_routes(problem, "taut"), strict=True)]  # fmt: skip
+    timings, met = [], []
+    for i, mine in enumerate(egos):
+        meetings = []
+        for k, other in enumerate(egos[:i]):
+            reach = mine.robot.footprint.radius + other.robot.footprint.radius + clearance
+            free = [runs_over(other.path, place, reach) is None for place in (mine.robot.start, mine.robot.goal)]
+            rests = [runs_over(mine.path, place, reach) is not None for place in (other.robot.start, other.robot.goal)]
+            regions = conflict_regions(
+                chords(mine.path), chords(other.path), reach, start_free=free[0], goal_free=free[1]
+            )
+            ends = Ends(*free, *rests)
+            meetings += [Meeting(region, k, timings[k].profile, ends, mine.length) for region in regions]
+        timings.append(time_robot(mine, meetings, profile=profile))
+        met.append(meetings)
+        if timings[-1] is None:
+            return None
+    return egos, timings, met
+
+
+@pytest.fixture(scope="session")
+def timed():
+    """(problem, profile) -> egos, timings and meetings, in the order of the file; None where a robot is stuck."""
+    return _timed
+
+
+def _bent_crossing(seed, count=5):
+    """Robots on given ways with a bend or two, through one place at about one time."""
+    rng = np.random.default_rng(seed)
+    robots, used = [], []
+    while len(robots) < count:
+        turn, side = rng.uniform(0, 2 * np.pi), rng.uniform(-1.5, 1.5)
+        along, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+        corners = [(-8, 0), (-2, 0), (1, side), (8, side)]
+        way = [tuple(np.round(x * along + y * across, 3).tolist()) for x, y in corners]
+        if any(np.hypot(p[0] - q[0], p[1] - q[1]) < 2.0 for p in (way[0], way[-1]) for q in used):
+            continue
+        used += [way[0], way[-1]]
+        limits = Limits(*np.round(rng.uniform((0.7, 0.4, 0.4, 0.7, 0.2), (1.3, 1.0, 1.0, 3.0, 0.5)), 2).tolist())
+        name = f"r{len(robots)}"
+        robots.append(Robot(name, Footprint(0.3), limits, way[0], way[-1], path=tuple(way), corner_radius=0.5))
+    return Problem("bent", LARGE, tuple(robots))
+
+
+@pytest.fixture(scope="session")
+def bent_crossing():
+    """seed -> a problem of robots on given ways with bends."""
+    return _bent_crossing
+
+
+@pytest.fixture(scope="session")
+def squared_jerk():
+    """profile -> integral of the squared jerk [m2/s5]."""
+    return lambda profile: float((np.diff(profile.times) * profile.jerks**2).sum())

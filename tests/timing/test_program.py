@@ -12,8 +12,8 @@ from coord.model.path import straight
 from coord.model.robot import Limits, Robot
 from coord.timing.clear import excess
 from coord.timing.ego import ego
-from coord.timing.program import Tube, through_tube
-from coord.timing.tube import after_bound, before_bound
+from coord.timing.program import through_tube
+from coord.timing.tube import Tube, after_bound, before_bound
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 

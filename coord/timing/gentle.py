@@ -1,0 +1,61 @@
+"""Driving gently: the same choice of whom to let pass, a little later, with the least squared jerk and acceleration.
+
+A robot that arrives as early as it can mostly waits at its start and then hurries. With a few tenths of a second
+more it can roll, slow down in time instead of standing, and brake softly.
+"""
+
+from __future__ import annotations
+
+from coord.model.profile import VelocityProfile
+from coord.timing.ego import Ego
+from coord.timing.meeting import Meeting
+from coord.timing.program import course_of, smooth_through
+from coord.timing.tube import Tube, after_bound, before_bound
+
+#: A gentle robot may arrive later by this share of its arrival and by so many seconds. Where many cross one hub the
+#: delays add up: with 0.004 the arrivals of 101 robots came 1.1 % later, with this less than 1 %.
+_SHARE, _MORE = 0.0025, 0.06
+
+#: [s] On paths with bends it may arrive later by so much more, because the cells lose something at every bend.
+_FOR_BENDS = 0.06
+
+#: Scales of the cells, of the program's: the coarser one is for tubes for which the finer one would be too large.
+_MESHES = (0.5, 1.25)
+
+#: [1/s2] Weight of the squared acceleration beside the squared jerk.
+_EASE = 0.1
+
+#: How often windows that turn out to be in the way are added to the tube.
+_ROUNDS = 8
+
+
+def gentle(ego: Ego, meetings: list[Meeting], quickest: VelocityProfile, known: list[int]) -> VelocityProfile | None:
+    """The gentle profile on the same side of every meeting as ``quickest``; None where none is found.
+
+    ``known`` : meetings, by index, that are likely to matter. The profile is exactly clear and keeps the limits.
+    """
+    sides = {index: meetings[index].passes_after(quickest) for index in known}
+    course = None if ego.caps.is_constant else course_of(quickest, ego.alone.departure)
+    arrival = quickest.arrival * (1 + _SHARE) + _MORE + (0.0 if ego.caps.is_constant else _FOR_BENDS)
+    for _ in range(_ROUNDS):
+        tube = Tube(
+            [after_bound(meetings[index].window) for index, after in sides.items() if after],
+            [before_bound(meetings[index].window) for index, after in sides.items() if not after],
+        )
+        found = (smooth_through(ego, tube, arrival, mesh, _EASE, course) for mesh in _MESHES)
+        profile = next((one for one in found if one is not None), None)
+        if profile is None:
+            return None
+        violated = _violated(meetings, profile)
+        if not violated:
+            return profile
+        if not sides.keys().isdisjoint(violated):  # a bound of the tube was missed by rounding
+            return None
+        sides |= {index: meetings[index].passes_after(quickest) for index in violated}
+    return None
+
+
+def _violated(meetings: list[Meeting], profile: VelocityProfile) -> list[int]:
+    """All meetings, by index, at which a profile runs into another robot."""
+    gaps = ((index, meeting.excess(profile)) for index, meeting in enumerate(meetings))
+    return [index for index, gap in gaps if gap is not None and not gap.is_clear]

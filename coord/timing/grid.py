@@ -1,0 +1,177 @@
+"""The time grid of the programs: knots where the tube has its events, and in each cell its bounds and its speed cap.
+
+A cap that varies along the path is no linear constraint. It becomes one when it is settled beforehand in which
+cells the robot is in a bend: there the bend's cap holds wherever the robot is, and in all other cells the robot
+keeps out of the bend. What is settled is taken from a course, a rough motion, and corrected by the next solution.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coord.alone.speed_limit import SpeedLimit
+from coord.model.arrays import Array
+from coord.model.robot import Limits
+from coord.solvers.linear import SIZES, Cells
+from coord.timing.tube import Tube, lower_on_cells, upper_on_cells
+from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN, SAME_PLACE
+
+#: First cells after an event of the tube last this share of acceleration / jerk; then they grow.
+_FIRST_CELL = 0.25
+_GROWTH = 1.5
+
+#: [s] Longest cell where no window is, and where one is.
+_LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
+
+#: On long stretches without an event cells may last this share of the stretch.
+_OF_STRETCH = 1 / 40
+
+#: [s] Events nearer than this to each other are one.
+_SAME_TIME = 1e-6
+
+#: [s] See ``border_times``.
+_A_MOMENT = 5e-3
+
+#: Parts of a cell between which a course is taken for straight.
+_PARTS = 8
+
+#: [m] The tube is narrowed by this, so that the solver's rounding stays inside.
+_TUBE_MARGIN = 2 * REGION_MARGIN
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """Roughly when the robot is where: arc lengths (n,) [m], nondecreasing, at times (n,) [s], linear in between."""
+
+    times: Array
+    s: Array
+
+    def at(self, times: Array) -> Array:
+        """Arc lengths (m,) [m] at the times (m,) [s]."""
+        return np.asarray(np.interp(times, self.times, self.s))
+
+    def until(self, departure: float, arrival: float) -> Course:
+        """The same course with its times stretched to a departure and an arrival [s]."""
+        first, last = self.times[0], self.times[-1]
+        return Course(departure + (self.times - first) * ((arrival - departure) / (last - first)), self.s)
+
+    def cut(self, arrival: float, length: float) -> Course:
+        """The same course, but at the goal by the arrival [s], and not beyond."""
+        keep = (self.times < arrival) & (self.s < length)
+        return Course(np.append(self.times[keep], arrival), np.append(self.s[keep], length))
+
+    def passes(self, s: Array) -> Array:
+        """The first times (m,) [s] at which the arc lengths s (m,) [m] are reached."""
+        k = np.clip(np.searchsorted(self.s, s, side="left"), 1, len(self.s) - 1)
+        rise = self.s[k] - self.s[k - 1]
+        share = np.divide(s - self.s[k - 1], rise, out=np.zeros_like(s), where=rise > 0)
+        return np.asarray(self.times[k - 1] + np.clip(share, 0.0, 1.0) * (self.times[k] - self.times[k - 1]))
+
+
+def time_knots(
+    tube: Tube, departure: float, arrival: float, limits: Limits, mesh: float, further: Sequence[float] = ()
+) -> Array | None:
+    """Knots at the tube's events and ``further`` ones [s], dense behind and before each, as many as a program has.
+
+    None where that would be more than the largest program has. ``mesh`` scales all cells.
+    """
+    spans = tube.spans
+    events = {departure, arrival, *(t for span in spans for t in span), *further}
+    knots = sorted(t for t in events if departure <= t <= arrival)
+    shortest = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02) * mesh
+    times = [departure]
+    for start, end in itertools.pairwise(knots):
+        if end - start < _SAME_TIME:  # two events at once
+            times[-1] = end if len(times) > 1 else times[-1]
+            continue
+        middle = (start + end) / 2
+        is_taken = any(a < middle < b for a, b in spans)
+        longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
+        times += _graded(start, end, min(shortest, longest), longest)
+    size = next((size for size in SIZES if size >= len(times) - 1), None)
+    if size is None:
+        return None
+    while len(times) - 1 < size:
+        k = int(np.argmax(np.diff(times)))
+        times.insert(k + 1, (times[k] + times[k + 1]) / 2)
+    times[-1] = arrival
+    return np.array(times)
+
+
+def _graded(start: float, end: float, first: float, longest: float) -> list[float]:
+    """Knots after ``start`` up to ``end``: cells grow from both ends towards the middle."""
+    half, sizes = (end - start) / 2, [first]
+    while sum(sizes) < half:
+        sizes.append(min(sizes[-1] * _GROWTH, longest))
+    scale = half / sum(sizes)
+    widths = np.array(sizes + sizes[::-1]) * scale
+    return [*(start + np.cumsum(widths)[:-1]).tolist(), end]
+
+
+def border_times(caps: SpeedLimit, course: Course) -> list[float]:
+    """When a course passes from one section of the speed limit to the next [s]; a moment later where the cap rises.
+
+    The quickest course could not be there any sooner, and must not be asked to by a rounding.
+    """
+    if caps.is_constant:
+        return []
+    later = np.where(np.diff(caps.caps) > 0, _A_MOMENT, 0.0)
+    return [float(time) for time in course.passes(caps.ends[:-1]) + later]
+
+
+def course_through(times: Array, states: Array) -> Course:
+    """The course of a motion with states (n, 3) at times (n,), the jerk constant in between."""
+    h = np.diff(times)[:, None]
+    u = h * np.arange(_PARTS) / _PARTS
+    s, v, a = (states[:-1, k, None] for k in range(3))
+    jerk = np.diff(states[:, 2])[:, None] / h
+    within = s + u * (v + u * (a / 2 + u * jerk / 6))
+    at = np.append((times[:-1, None] + u).ravel(), times[-1])
+    return Course(at, np.maximum.accumulate(np.append(within.ravel(), states[-1, 0])))
+
+
+def cells_in(
+    tube: Tube, times: Array, length: float, caps: SpeedLimit, course: Course | None, lead: float = 0.0
+) -> Cells:
+    """The cells between the knots with the bounds of the tube, and the caps of the sections where the course is.
+
+    ``lead`` : where the course will be in so many seconds [s] counts as well.
+    """
+    n = len(times) - 1
+    upper, lower = np.full((n, 4), np.inf), np.full((n, 4), -np.inf)
+    for bound in tube.upper:
+        np.minimum(upper, upper_on_cells(bound, times, _TUBE_MARGIN), out=upper)
+    for bound in tube.lower:
+        np.maximum(lower, np.minimum(lower_on_cells(bound, times, _TUBE_MARGIN), length), out=lower)
+    if caps.is_constant or course is None:
+        top = np.full(n, float(caps.caps.min(initial=np.inf)))
+    else:
+        top, first, last = _stretches(caps, course.at(times[:-1]), course.at(times[1:] + lead))
+        np.maximum(lower, first[:, None], out=lower)
+        np.minimum(upper, last[:, None], out=upper)
+    return Cells(np.diff(times), upper, lower, top * (1 - LIMIT_MARGIN))
+
+
+def _stretches(caps: SpeedLimit, s_from: Array, s_to: Array) -> tuple[Array, Array, Array]:
+    """For each cell its cap (n,) [m/s], and the stretch (n,), (n,) [m] about it where no cap is lower."""
+    count = len(caps.caps)
+    borders, values = caps.ends[:-1], caps.caps.tolist()
+    begin = np.searchsorted(borders, s_from + SAME_PLACE, side="right").tolist()
+    end = np.searchsorted(borders, s_to - SAME_PLACE, side="left").tolist()
+    rows = []
+    for i, k in zip(begin, end, strict=True):
+        cap = min(values[i : max(i, k) + 1])
+        first, last = i, max(i, k)
+        while first > 0 and values[first - 1] >= cap:
+            first -= 1
+        while last < count - 1 and values[last + 1] >= cap:
+            last += 1
+        low = borders[first - 1] + _TUBE_MARGIN if first > 0 else -np.inf
+        high = borders[last] - _TUBE_MARGIN if last < count - 1 else np.inf
+        rows.append((cap, low, high))
+    top, low, high = np.array(rows).T
+    return top, low, high
