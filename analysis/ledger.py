@@ -12,20 +12,20 @@ import csv
 import sys
 from pathlib import Path
 
-from coord import BadFileError, read_problem
+from coord import BadFileError, Options, read_problem
 from coord.plan import plan
 
 HERE = Path(__file__).resolve().parent
 COLUMNS = ("problem", "robots", "delay a robot [s]", "gap [%]", "least clearance [m]", "seconds", "outcome")
 
 
-def row(file: Path) -> tuple[str, ...]:
+def row(file: Path, profile: str) -> tuple[str, ...]:
     """One line of the table."""
     try:
         problem = read_problem(file)
     except BadFileError as error:
         return (file.stem, "", "", "", "", "", f"not read: {error.faults[0].text}")
-    result = plan(problem)
+    result = plan(problem, Options(profile=profile))
     count = str(len(problem.robots))
     if result.plan is None or not result.certified:
         return (file.stem, count, "", "", "", f"{result.seconds:.2f}", result.diagnoses[0].code)
@@ -41,6 +41,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folders", nargs="*", type=Path, default=[HERE.parent / "problems"])
     parser.add_argument("--csv", type=Path)
+    parser.add_argument("--profile", default="fastest", choices=("fastest", "gentle"))
     arguments = parser.parse_args()
     files = [
         file
@@ -51,7 +52,7 @@ def main() -> None:
     rows = []
     print("| " + " | ".join(COLUMNS) + " |\n|" + "---|" * len(COLUMNS))
     for file in files:
-        rows.append(row(file))
+        rows.append(row(file, arguments.profile))
         print("| " + " | ".join(rows[-1]) + " |", flush=True)
     if arguments.csv:
         with arguments.csv.open("w", newline="", encoding="utf-8") as stream:

@@ -96,7 +96,9 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
     if order is None:
         raise RuntimeError("robots block each other in a ring although all rings were opened")
     scene = scene_of(egos, reaches, found.blocks, clearance)
-    timings = plan_in_order(scene, order, lambda done: progress("velocities", done, total), time_is_up)
+    timings = plan_in_order(
+        scene, order, lambda done: progress("velocities", done, total), time_is_up, profile=options.profile
+    )
     return plan_of(problem, quickest, found, egos, order, timings)
 
 

@@ -56,7 +56,7 @@ def possible() -> list[str]:
 
 def attempt(problem: Problem) -> dict[str, Any] | None:
     """What coord finds with its defaults and the problem's own options; None without a certified plan."""
-    options = Options(**problem.options)  # type: ignore[arg-type]
+    options = Options(**{"profile": "fastest", **problem.options})  # type: ignore[arg-type]
     result = plan(problem, options)
     if result.plan is None or not result.certified:
         return None

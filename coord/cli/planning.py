@@ -48,7 +48,11 @@ def plan(
         typer.Option(metavar="NAME", help="Who is planned first. priority: yours, then who needs longest alone."),
     ] = None,
     profile: Annotated[
-        str | None, typer.Option(metavar="NAME", help="How robots drive. fastest: each arrives as early as it can.")
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="How robots give way. gentle: early and smoothly (default); fastest: each arrives as early as it can.",
+        ),
     ] = None,
     time_limit: Annotated[float | None, typer.Option(metavar="S", help="Stop searching after this long [s].")] = None,
     gap_target: Annotated[float | None, typer.Option(metavar="G", help="Not supported yet.")] = None,

@@ -76,7 +76,12 @@ def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozens
 
 
 def plan_in_order(
-    scene: Scene, order: Sequence[int], done: Callable[[int], None], time_is_up: Callable[[], bool] = lambda: False
+    scene: Scene,
+    order: Sequence[int],
+    done: Callable[[int], None],
+    time_is_up: Callable[[], bool] = lambda: False,
+    *,
+    profile: str = "fastest",
 ) -> dict[int, Timing]:
     """A profile for every robot, each against those before it in an order that respects the blocking arcs.
 
@@ -84,6 +89,7 @@ def plan_in_order(
     ----------
     done : called after each robot with the number of robots that have a profile.
     time_is_up : asked before each robot.
+    profile : "fastest" or "gentle", as in ``time_robot``.
 
     Raises
     ------
@@ -96,15 +102,16 @@ def plan_in_order(
             raise NoPlanError([diagnose.time_is_up(len(timings), len(order))])
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
         is_last = all(k in timings for k in scene.neighbours[i])
-        timings[i] = _timing(scene.egos[i], meetings, is_last=is_last) or _waiting(scene.egos[i], meetings)
+        found = _timing(scene.egos[i], meetings, is_last=is_last, profile=profile)
+        timings[i] = found or _waiting(scene.egos[i], meetings)
         done(len(timings))
     return timings
 
 
-def _timing(ego: Ego, meetings: list[Meeting], *, is_last: bool) -> Timing | None:
+def _timing(ego: Ego, meetings: list[Meeting], *, is_last: bool, profile: str) -> Timing | None:
     """The profile that the timing stage finds; None where it finds none, or a library fails it."""
     try:
-        return time_robot(ego, meetings, is_last=is_last)
+        return time_robot(ego, meetings, is_last=is_last, profile=profile)
     except SolverError:
         return None
 

@@ -34,7 +34,7 @@ def plan_of(
             # a way found later may happen to be quicker: then that one is the quickest known
             solo_arrival=min(quickest[i].alone.shifted(robot.release).arrival, egos[i].alone.arrival),
             solo_bound=egos[i].solo_bound,
-            lower_bound=egos[i].solo_bound,
+            lower_bound=max(egos[i].solo_bound, timings[i].lower_bound),
             after=tuple(names[k] for k in timings[i].after),
             before=tuple(names[k] for k in timings[i].before),
             how=timings[i].how,

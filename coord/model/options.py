@@ -16,7 +16,7 @@ _CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
     "method": ("velocity",),
     "shape": SHAPES,
     "order": ("priority",),
-    "profile": ("fastest",),
+    "profile": ("gentle", "fastest"),
 }
 
 #: Values that the contract names and later work brings.
@@ -24,7 +24,7 @@ _LATER = {
     "method": ("stop", "nearest"),
     "shape": (),
     "order": ("longest", "shortest", "heading", "random", "search"),
-    "profile": ("gentle",),
+    "profile": (),
 }
 
 
@@ -38,7 +38,8 @@ class Options:
     shape : "fitted": every turn as wide as pays in time; "exponential": detours along least-squares exponentials;
         "taut": the shortest way of arcs and tangents; "follow": along the edges of the obstacles.
     order : "priority": the user's priorities, else the longest alone first.
-    profile : "fastest": each robot arrives as early as it can.
+    profile : "gentle": whoever has to give way slows down in time and rolls, at a few per mille of its time;
+        "fastest": each robot arrives as early as it can.
     time_limit : wall time [s] after which a run without a plan gives up; None for no limit.
     gap_target : None; the gap at which a search over orders would end comes with that search.
     seed : of every random draw; nothing is drawn yet.
@@ -48,7 +49,7 @@ class Options:
     method: str = "velocity"
     shape: str = "fitted"
     order: str = "priority"
-    profile: str = "fastest"
+    profile: str = "gentle"
     time_limit: float | None = None
     gap_target: float | None = None
     seed: int = 0

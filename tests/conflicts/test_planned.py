@@ -9,9 +9,16 @@ import numpy as np
 import pytest
 
 from coord.model.footprint import Footprint, square
+from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
-from coord.plan import plan
+from coord.plan import plan as plan_with
+
+
+def plan(problem):
+    """These theorems are about the earliest arrival."""
+    return plan_with(problem, Options(profile="fastest"))
+
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 

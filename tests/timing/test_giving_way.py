@@ -13,9 +13,16 @@ from hypothesis import strategies as st
 from coord.alone.fastest import fastest
 from coord.alone.inverse import time_at
 from coord.model.footprint import Footprint
+from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
-from coord.plan import plan
+from coord.plan import plan as plan_with
+
+
+def plan(problem):
+    """These theorems are about the earliest arrival."""
+    return plan_with(problem, Options(profile="fastest"))
+
 
 LARGE = Workspace((-500.0, -500.0, 500.0, 500.0), 0.05)
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from coord.plan import plan
+from coord.model.options import Options
+from coord.plan import plan as plan_with
+
+
+def plan(problem):
+    """These theorems are about the earliest arrival."""
+    return plan_with(problem, Options(profile="fastest"))
 
 
 @pytest.mark.parametrize("seed", range(12))
