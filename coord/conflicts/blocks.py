@@ -18,6 +18,7 @@ from coord.conflicts.chords import Chords
 from coord.conflicts.core import Core, swept
 from coord.conflicts.discs import ellipse_slice, stadium_extent
 from coord.conflicts.rounded import bends, rounded_extent, rounded_slice
+from coord.geometry.index import connected
 from coord.model.arrays import Array
 from coord.tolerances import DISTANCE, REGION_MARGIN, SAME_PLACE
 
@@ -159,15 +160,7 @@ def components(blocks: Blocks) -> list[npt.NDArray[np.intp]]:
     if n == 1:
         return [np.array([0])]
     a, b = _touching(blocks)
-    group = np.arange(n)
-    while True:  # labels flow to the smallest of a group, in ever larger strides
-        least = group.copy()
-        np.minimum.at(least, a, group[b])
-        np.minimum.at(least, b, group[a])
-        least = least[least]
-        if np.array_equal(least, group):
-            break
-        group = least
+    group = connected(n, a, b)
     return [np.flatnonzero(group == label) for label in np.unique(group)]
 
 

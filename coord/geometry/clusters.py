@@ -9,6 +9,7 @@ import numpy.typing as npt
 import shapely
 
 from coord.geometry.growth import Grown
+from coord.geometry.index import connected
 from coord.geometry.shapes import core
 from coord.model.arrays import Point
 from coord.model.obstacle import Obstacle
@@ -20,23 +21,14 @@ def clusters(grown: Grown) -> npt.NDArray[np.intp]:
     A cluster is called by the least of its parts.
     """
     count = len(grown.parts)
-    label = np.arange(count)
     if not count:
-        return label
+        return np.empty(0, dtype=np.intp)
     bounds, rho = shapely.bounds(grown.parts), grown.rho[:, None]
     boxes = shapely.box(*np.hstack([bounds[:, :2] - rho, bounds[:, 2:] + rho]).T)
     a, b = shapely.STRtree(boxes).query(boxes, predicate="intersects")
     a, b = a[a < b], b[a < b]
     closed = shapely.dwithin(grown.parts[a], grown.parts[b], grown.rho[a] + grown.rho[b])
-    a, b = a[closed], b[closed]
-    while True:  # labels flow to the least of a cluster, in ever larger strides
-        least = label.copy()
-        np.minimum.at(least, a, label[b])
-        np.minimum.at(least, b, label[a])
-        least = least[least]
-        if np.array_equal(least, label):
-            return label
-        label = least
+    return connected(count, a[closed], b[closed])
 
 
 def anchor(grown: Grown, parts: npt.NDArray[np.intp], start: Point, goal: Point) -> Point:

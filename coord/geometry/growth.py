@@ -15,6 +15,7 @@ import numpy.typing as npt
 import shapely
 
 from coord.errors import InvalidValueError
+from coord.geometry.index import connected
 from coord.geometry.shapes import Geometry, core
 from coord.model.arrays import Array
 from coord.model.footprint import Footprint
@@ -156,14 +157,7 @@ def _merged(polygons: list[Geometry]) -> list[Geometry]:
     small = np.array([shapely.get_num_coordinates(polygon) <= _MOST_VERTICES for polygon in polygons], dtype=np.bool_)
     shapes = np.array(polygons, dtype=object)
     a, b = shapely.STRtree(shapes[small]).query(shapes[small], predicate="intersects")
-    label = np.arange(int(small.sum()))
-    while True:
-        least = label.copy()
-        np.minimum.at(least, a, label[b])
-        least = least[least]
-        if np.array_equal(least, label):
-            break
-        label = least
+    label = connected(int(small.sum()), a, b)
     merged = list(shapes[~small])
     for group in np.unique(label).tolist():
         members = shapes[small][label == group]

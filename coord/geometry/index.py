@@ -1,4 +1,4 @@
-"""Which of many boxes are near each other: the spatial index."""
+"""Which of many boxes are near each other, and what hangs together: the spatial index."""
 
 from __future__ import annotations
 
@@ -16,3 +16,16 @@ def touching_boxes(boxes: Array) -> npt.NDArray[np.intp]:
     pairs = np.stack([first, second], axis=1)
     pairs = pairs[first < second]
     return np.asarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])
+
+
+def connected(count: int, a: npt.NDArray[np.intp], b: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Labels (count,) of the connected components of a graph with edges a[k] - b[k]: the least member of each."""
+    label = np.arange(count)
+    while True:  # labels flow to the least of a component, in ever larger strides
+        least = label.copy()
+        np.minimum.at(least, a, label[b])
+        np.minimum.at(least, b, label[a])
+        least = least[least]
+        if np.array_equal(least, label):
+            return label
+        label = least

@@ -32,7 +32,10 @@ def route_of(plan: Plan, name: str) -> Route:
             return found
         sides = sides or found
     profile = fastest(part.path, part.robot.limits)
-    remark = "This path is not one of those that the robot would have with nobody else on the floor."
+    remark = (
+        "A plan keeps neither via points nor given paths nor ways round other robots; "
+        "the dashed ways are those without any of these."
+    )
     ways = sides.ways if sides else ()
     return Route(
         part.path, profile, "as planned", "", math.dist(part.robot.start, part.robot.goal), ways, (), (remark,)
