@@ -28,8 +28,9 @@ from coord.solvers.jerk import LinkTimes, rest_to_rest
 #: Shares of half a turn that each clothoid may take: one for finding the radius, others about the best radius.
 _SHARE, _OTHER_SHARES = 0.5, (0.0, 1.0)
 
-#: Radii tried for a turn: this many, evenly spaced in the logarithm up to the one that needs no slowing down.
-_RADII = 6
+#: Radii tried for a turn: this many, evenly spaced in the logarithm up to the one that needs no slowing down; and
+#: where there are few turns, which compete for less room.
+_RADII, _RADII_OF_FEW, _VERY_FEW = 6, 9, 4
 
 #: Turns up to which it pays to begin at the back, too.
 _FEW = 10
@@ -122,7 +123,8 @@ def _candidates(bends: Bends, k: int, limits: Limits, trying_radii: bool) -> lis
     """Bends for one turn: radii up to one that is driven at full speed; or other shares about the radius it has."""
     tightest = max(bends.skeleton.turns[k].radius, SMALLEST_RADIUS)
     widest = max(limits.speed**2 / limits.lateral_acceleration, tightest) * 1.0001
-    radii = [float(radius) for radius in np.geomspace(tightest, widest, _RADII) + AIR]
+    count = _RADII_OF_FEW if len(bends.bends) <= _VERY_FEW else _RADII
+    radii = [float(radius) for radius in np.geomspace(tightest, widest, count) + AIR]
     if trying_radii:
         return [Bend(radius, _SHARE) for radius in radii]
     near = int(np.abs(np.log(np.array(radii) / bends.bends[k].radius)).argmin())
