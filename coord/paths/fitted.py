@@ -36,7 +36,7 @@ _RADII, _RADII_OF_FEW, _VERY_FEW = 6, 9, 4
 _FEW = 10
 
 #: Rounds over all turns.
-_ROUNDS = 2
+_ROUNDS = 4
 
 #: A path within this share of the time that its skeleton's length alone would take is not improved any more.
 _GOOD_ENOUGH = 2e-4
