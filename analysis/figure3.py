@@ -93,8 +93,8 @@ def shapes(scene: Scene) -> dict[str, Shaped]:
     if isinstance(bones, NoWay):
         raise SystemExit(f"{scene.name}: there is no way")
     found = {
-        "taut": Shaped(_is_path(taut(bones, floor))),
-        "fitted": Shaped(_is_path(fitted(bones, LIMITS, floor))),
+        "taut": Shaped(_is_path(taut(bones, floor)), "taut"),
+        "fitted": Shaped(_is_path(fitted(bones, LIMITS, floor)), "fitted"),
         "exponential": exponential(bones, LIMITS, floor),
         "follow": follow(floor, scene.start, scene.goal, LIMITS),
     }

@@ -19,10 +19,10 @@ from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import Chords, chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import ConflictRegion, conflict_regions
-from coord.coordination.blocking import arc_of, find_blocks
+from coord.coordination.blocking import arc_of, reaches_of
 from coord.coordination.order import topological_order, urgency
 from coord.coordination.records import reroute_record, unopened
-from coord.coordination.rerouting import Rerouting, reroute
+from coord.coordination.rerouting import without_rings
 from coord.errors import NoPlanError
 from coord.geometry.clusters import names_of
 from coord.geometry.growth import Grown, grow
@@ -135,7 +135,13 @@ def explain(
         return Explanation(problem, options.shape, trips, (), (), (), None, diagnoses=lost)
     rest = dataclasses.replace(problem, robots=driving)
     quickest = [trip.quickest for trip in trips if trip.quickest is not None]
-    found = _rerouting(rest, quickest, options, lambda done, total: progress("ways round", done, total))
+    found = without_rings(
+        rest,
+        quickest,
+        options.shape,
+        keep_paths=options.keep_paths,
+        done=lambda done, total: progress("ways round", done, total),
+    )
     taken = {robot.name: route for robot, route in zip(driving, found.routes, strict=True)}
     trips = tuple(dataclasses.replace(trip, route=taken.get(trip.robot.name)) for trip in trips)
 
@@ -220,27 +226,12 @@ def _in_the_way(problem: Problem, robot: Robot, grounds: dict[Footprint, Grown])
     return tuple(names_of(problem.obstacles, grounds[shape], np.unique(hit)))
 
 
-def _candidates(lanes: Sequence[_Lane], clearance: float) -> list[tuple[int, int]]:
-    reaches = [lane.robot.footprint.radius + clearance / 2 for lane in lanes]
-    return candidate_pairs([lane.chords for lane in lanes], reaches)
-
-
-def _rerouting(
-    problem: Problem, quickest: Sequence[Route], options: Options, done: Callable[[int, int], None]
-) -> Rerouting:
-    """Who blocks whom, and who leaves its quickest route for that."""
-    paths, clearance = [route.path for route in quickest], problem.workspace.clearance
-    pairs = _candidates(_lanes(problem.robots, quickest), clearance)
-    blocks = find_blocks(problem.robots, paths, pairs, clearance, stay=problem.workspace.after_arrival == "stay")
-    return reroute(problem, quickest, blocks, options.shape, keep_paths=options.keep_paths, done=done)
-
-
 def _all_encounters(
     problem: Problem, routes: Sequence[Route], done: Callable[[int, int], None]
 ) -> tuple[Encounter, ...]:
     """The meetings of all pairs on the routes they take, in the order of the robots."""
     lanes, clearance = _lanes(problem.robots, routes), problem.workspace.clearance
-    pairs = _candidates(lanes, clearance)
+    pairs = candidate_pairs([lane.chords for lane in lanes], reaches_of(problem.robots, clearance))
     encounters: list[Encounter] = []
     for count, pair in enumerate(pairs, 1):
         encounters += _encounters(lanes[pair[0]], lanes[pair[1]], clearance)

@@ -5,14 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from coord.conflicts.candidates import candidate_pairs
-from coord.conflicts.chords import chords
 from coord.coordination import diagnose
-from coord.coordination.blocking import arc_of, find_blocks
+from coord.coordination.blocking import arc_of, reaches_of
 from coord.coordination.order import topological_order, urgency
 from coord.coordination.prioritised import plan_in_order, scene_of
 from coord.coordination.records import plan_of, unopened
-from coord.coordination.rerouting import reroute
+from coord.coordination.rerouting import without_rings
 from coord.errors import NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
@@ -66,19 +64,15 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
     """The stages in order: paths, who blocks whom, ways round, alone, order, timing."""
     robots, clearance, total = problem.robots, problem.workspace.clearance, len(problem.robots)
     names = [robot.name for robot in robots]
-    reaches = [robot.footprint.radius + clearance / 2 for robot in robots]
 
     def check_time() -> None:
         if time_is_up():
             raise NoPlanError([diagnose.time_is_up(0, total)])
 
     quickest = find_routes(problem, options.shape, lambda done: progress("paths", done, total))
-    paths = [route.path for route in quickest]
-    pairs = candidate_pairs([chords(path) for path in paths], reaches)
-    found = reroute(
+    found = without_rings(
         problem,
         quickest,
-        find_blocks(robots, paths, pairs, clearance, stay=problem.workspace.after_arrival == "stay"),
         options.shape,
         keep_paths=options.keep_paths,
         done=lambda done, rings: progress("ways round", done, rings),
@@ -95,7 +89,7 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
     order = topological_order(urgent, names, [arc_of(robots, block) for block in found.blocks])
     if order is None:
         raise RuntimeError("robots block each other in a ring although all rings were opened")
-    scene = scene_of(egos, reaches, found.blocks, clearance)
+    scene = scene_of(egos, reaches_of(robots, clearance), found.blocks, clearance)
     timings = plan_in_order(
         scene, order, lambda done: progress("velocities", done, total), time_is_up, profile=options.profile
     )

@@ -62,6 +62,11 @@ def is_blocked(path: Path, block: Block, robots: Sequence[Robot], clearance: flo
     return runs_over(path, place_of(robots, block), distance, core) is not None
 
 
+def reaches_of(robots: Sequence[Robot], clearance: float) -> list[float]:
+    """How far each robot reaches from its path [m], its half of the clearance included: for candidate pairs."""
+    return [robot.footprint.radius + clearance / 2 for robot in robots]
+
+
 def find_blocks(
     robots: Sequence[Robot],
     paths: Sequence[Path],

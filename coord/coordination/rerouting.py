@@ -10,7 +10,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import InitVar, dataclass, field
 from itertools import groupby, islice
 
-from coord.coordination.blocking import Block, in_order, whose_place
+from coord.conflicts.candidates import candidate_pairs
+from coord.conflicts.chords import chords
+from coord.coordination.blocking import Block, find_blocks, in_order, reaches_of, whose_place
 from coord.coordination.rings import cycle_through, rings
 from coord.coordination.way_round import Rests, Way, rests, way_round
 from coord.model.problem import Problem
@@ -38,6 +40,23 @@ class Rerouting:
     blocks: tuple[Block, ...]
     around: dict[int, tuple[tuple[Block, ...], tuple[int, ...]]]
     left: tuple[tuple[Block, ...], ...]
+
+
+def without_rings(
+    problem: Problem,
+    quickest: Sequence[Route],
+    shape: str,
+    *,
+    keep_paths: bool,
+    done: Callable[[int, int], None],
+    check_time: Callable[[], None] = lambda: None,
+) -> Rerouting:
+    """Find out who blocks whom on the quickest routes, and open the rings; see ``reroute``."""
+    robots, workspace = problem.robots, problem.workspace
+    paths = [route.path for route in quickest]
+    pairs = candidate_pairs([chords(path) for path in paths], reaches_of(robots, workspace.clearance))
+    blocks = find_blocks(robots, paths, pairs, workspace.clearance, stay=workspace.after_arrival == "stay")
+    return reroute(problem, quickest, blocks, shape, keep_paths=keep_paths, done=done, check_time=check_time)
 
 
 def reroute(

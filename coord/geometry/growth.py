@@ -16,7 +16,7 @@ import shapely
 
 from coord.errors import InvalidValueError
 from coord.geometry.index import connected
-from coord.geometry.shapes import Geometry, core
+from coord.geometry.shapes import Geometry, core, meeting
 from coord.model.arrays import Array
 from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
@@ -108,15 +108,16 @@ def grow(
     _check_outlines(obstacles)
     K, reach = np.array(footprint.core), footprint.margin + clearance
     round_ones = [obstacle for obstacle in obstacles if isinstance(obstacle, Circle)]
-    polygons = [_widened(core(obstacle)[0], K) for obstacle in obstacles if not isinstance(obstacle, Circle)]
+    polygons = [
+        meeting(core(obstacle)[0], footprint.core) for obstacle in obstacles if not isinstance(obstacle, Circle)
+    ]
     shapes: list[Geometry] = []
     owners: list[int] = []
     for whole in _merged(polygons):
         pieces = _cut(whole)
         owners += [len(owners)] * len(pieces)
         shapes += pieces
-    centers = np.array([circle.center for circle in round_ones]).reshape(-1, 1, 2)
-    parts = np.array([*shapes, *shapely.convex_hull(shapely.multipoints(centers - K))], dtype=object)
+    parts = np.array([*shapes, *(meeting(core(circle)[0], footprint.core) for circle in round_ones)], dtype=object)
     rho = np.array([reach] * len(shapes) + [reach + circle.radius for circle in round_ones])
     outlines = _Outlines.of(parts)
     edges, edge_parts = outlines.edges()
@@ -135,18 +136,6 @@ def _check_outlines(obstacles: Sequence[Obstacle]) -> None:
     ]
     if faults:
         raise InvalidValueError(faults)
-
-
-def _widened(polygon: Geometry, K: Array) -> Geometry:
-    """The Minkowski sum of a polygon with -K; exact for concave outlines and holes, since K holds the origin."""
-    if len(K) == 1:
-        return polygon
-    swept = [polygon]
-    for ring in shapely.get_rings(polygon):
-        along = shapely.get_coordinates(ring)
-        ends = np.stack([along[:-1], along[1:]], axis=1)[:, :, None] - K  # (edges, 2, corners of K, 2)
-        swept += list(shapely.convex_hull(shapely.multipoints(ends.reshape(len(ends), -1, 2))))
-    return shapely.union_all(swept)
 
 
 def _merged(polygons: list[Geometry]) -> list[Geometry]:

@@ -8,7 +8,7 @@ here were checked before.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -79,7 +79,22 @@ def too_near(obstacles: Sequence[Obstacle], points: Array, reach: Array) -> tupl
     Indices (k,) of the points, indices (k,) of the obstacles, and signed distances (k,) [m] from the point
     to the obstacle's boundary, negative inside. Ordered by obstacle, then by point.
     """
-    tree = shapely.STRtree(shapely.points(points))
+    places = shapely.points(points)
+
+    def signed(shape: Geometry, near: Indices) -> Array:
+        return distances(shape, points[near]) - depths(shape, points[near])
+
+    return _too_near(obstacles, places, reach, signed)
+
+
+def _too_near(
+    obstacles: Sequence[Obstacle], shapes: Geometry, reach: Array, signed: Callable[[Geometry, Indices], Array]
+) -> tuple[Indices, Indices, Array]:
+    """Pairs of shapes (n,) and obstacles nearer than the shapes' reach (n,) [m], as ``too_near`` gives them back.
+
+    ``signed`` : signed distances [m] between an obstacle's core and some of the shapes, by index.
+    """
+    tree = shapely.STRtree(shapes)
     farthest = float(reach.max(initial=0.0))
     found: list[tuple[Indices, Indices, Array]] = []
     for k, obstacle in enumerate(obstacles):
@@ -90,14 +105,14 @@ def too_near(obstacles: Sequence[Obstacle], points: Array, reach: Array) -> tupl
         if not len(near):
             continue
         shapely.prepare(shape)  # a floor's outline has thousands of edges; prepared, few of them are looked at
-        near = near[shapely.dwithin(shape, tree.geometries[near], reach[near] + radius)]
-        signed = distances(shape, points[near]) - depths(shape, points[near]) - radius
-        hit = signed < reach[near] - DISTANCE
-        found.append((near[hit], np.full(int(hit.sum()), k, dtype=np.intp), signed[hit]))
+        near = near[shapely.dwithin(shape, shapes[near], reach[near] + radius)]
+        gaps = signed(shape, near) - radius
+        hit = gaps < reach[near] - DISTANCE
+        found.append((near[hit], np.full(int(hit.sum()), k, dtype=np.intp), gaps[hit]))
     if not found:
         return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), np.empty(0)
-    who, what, signed = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return who, what, signed
+    who, what, gaps = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return who, what, gaps
 
 
 def placed(points: Array, rings: Sequence[Sequence[Point]]) -> Geometry:
@@ -166,31 +181,18 @@ def polygons_too_near(
     far the footprint would have to move to be outside.
     """
     shapes = placed(points, rings)
-    tree = shapely.STRtree(shapes)
-    found: list[tuple[Indices, Indices, Array]] = []
-    for k, obstacle in enumerate(obstacles):
-        shape, radius = core(obstacle)
-        xmin, ymin, xmax, ymax = shapely.bounds(shape)
-        margin = clearance + radius
-        near = np.sort(tree.query(shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)))
-        if not len(near):
-            continue
-        shapely.prepare(shape)
-        near = near[shapely.dwithin(shape, shapes[near], margin)]
-        signed = np.asarray(shapely.distance(shape, shapes[near]), dtype=np.float64)
+
+    def signed(shape: Geometry, near: Indices) -> Array:
+        gaps = np.asarray(shapely.distance(shape, shapes[near]), dtype=np.float64)
         met: dict[tuple[Point, ...], Geometry] = {}
-        for n in np.flatnonzero(signed == 0).tolist():
+        for n in np.flatnonzero(gaps == 0).tolist():
             ring = tuple(rings[near[n]])
             if ring not in met:
                 met[ring] = meeting(shape, ring)
-            signed[n] = -float(depths(met[ring], points[near[n : n + 1]])[0])
-        signed -= radius
-        hit = signed < clearance - DISTANCE
-        found.append((near[hit], np.full(int(hit.sum()), k, dtype=np.intp), signed[hit]))
-    if not found:
-        return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp), np.empty(0)
-    who, what, signed = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return who, what, signed
+            gaps[n] = -float(depths(met[ring], points[near[n : n + 1]])[0])
+        return gaps
+
+    return _too_near(obstacles, shapes, np.full(len(points), clearance), signed)
 
 
 def grown_outlines(obstacles: Sequence[Obstacle], ring: Sequence[Point], reach: float) -> list[Array]:

@@ -24,9 +24,13 @@ class Fit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shaped:
-    """A skeleton made into a path that can be driven; ``remarks`` say in words where a shape gave up, and why."""
+    """A skeleton made into a path that can be driven.
+
+    ``shape`` : the one it has, which may be another than was asked for; ``remarks`` then say in words why.
+    """
 
     path: Path
+    shape: str
     fits: tuple[Fit, ...] = ()
     remarks: tuple[str, ...] = ()
 

@@ -71,7 +71,7 @@ def exponential(skeleton: Skeleton, limits: Limits, floor: Floor) -> Shaped | No
     None where there are no fitted turns either, which only places to pass bring about.
     """
     if not skeleton.turns:
-        return Shaped(straight(skeleton.start, skeleton.goal))
+        return Shaped(straight(skeleton.start, skeleton.goal), "straight")
     guide = taut(skeleton, floor)
     if guide is None:
         return None
@@ -80,9 +80,9 @@ def exponential(skeleton: Skeleton, limits: Limits, floor: Floor) -> Shaped | No
         found = _solve(Line(floor, skeleton.start, skeleton.goal, guide), limits)
     if not isinstance(found, str):
         path, bends = found
-        return Shaped(path, tuple(fit for bend in bends for fit in bend.curve.flanks.fits))
+        return Shaped(path, "exponential", tuple(fit for bend in bends for fit in bend.curve.flanks.fits))
     path = fitted(skeleton, limits, floor) or guide
-    return Shaped(path, remarks=(f"Fitted turns instead of exponential ones: {found}.",))
+    return Shaped(path, "fitted", remarks=(f"Fitted turns instead of exponential ones: {found}.",))
 
 
 def hull_points(floor: Floor, path: Path, limits: Limits) -> list[Array]:

@@ -80,14 +80,14 @@ def _widened(
     floor: Floor,
 ) -> tuple[float, Path]:
     """Time and path after all turns were gone through, one way or the other, until nothing changes."""
-    worth: set[int] | None = None  # the turns beside one that changed; None: all
+    worth = set(range(len(bends.bends)))  # in later rounds only the turns beside one that changed
     for _ in range(_ROUNDS):
-        changed: set[int] | None = set()
+        changed: set[int] = set()
         done = 0
         while done < len(bends.bends) and best[0] > ideal:
             k = done if forward else len(bends.bends) - 1 - done
             done += 1
-            if worth is not None and k not in worth:
+            if k not in worth:
                 continue
             count = len(bends.bends)
             for trying_radii in (True, False):
@@ -97,14 +97,13 @@ def _widened(
                     continue
                 time, bends, path = found
                 best = (time, path)
-                if changed is not None:
-                    changed |= {k - 1, k + 1}
+                changed |= {k - 1, k + 1}
                 if len(bends.bends) < count:  # a corner is passed clear of now: the places of the others have changed
-                    changed, worth = None, None
+                    changed, worth = set(range(len(bends.bends))), set(range(len(bends.bends)))
                     done -= 1
                     break
         worth = changed
-        if worth is not None and not worth:
+        if not worth:
             break
     return best
 

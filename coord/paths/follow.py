@@ -61,7 +61,7 @@ def follow(
     """
     del limits
     if math.dist(start, goal) <= SAME_PLACE:
-        return Shaped(straight(start, goal))
+        return Shaped(straight(start, goal), "straight")
     outer = _outer(floor, start, goal)
     chains = _way(Contour(outer), start, goal, side)
     if not isinstance(chains, str):
@@ -72,7 +72,7 @@ def follow(
                 and math.dist(path.end, goal) < SAME_PLACE
                 and keeps_distance(_inner(floor, outer), path)
             ):
-                return Shaped(path)
+                return Shaped(path, "follow")
         chains = "no fillet at a corner of the edge keeps the distance"
     if side is not None:
         return chains
@@ -80,7 +80,7 @@ def follow(
     shortest = None if isinstance(found, NoWay) else taut(found, floor)
     if shortest is None:
         return chains
-    return Shaped(shortest, remarks=(f"The shortest way instead of the obstacles' edge: {chains}.",))
+    return Shaped(shortest, "taut", remarks=(f"The shortest way instead of the obstacles' edge: {chains}.",))
 
 
 def _outer(floor: Floor, start: Point, goal: Point) -> Floor:

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from coord.geometry.blocked import Floor
 from coord.geometry.clusters import names_of, reaches_edge
 from coord.geometry.enclosure import enclosing
 from coord.geometry.growth import Grown
-from coord.geometry.shapes import part_distances
+from coord.geometry.shapes import distances, part_distances
 from coord.model.arrays import Point
 from coord.model.path import Path
 from coord.model.problem import Problem
@@ -22,14 +23,17 @@ from coord.tolerances import DISTANCE
 _MOST_NAMES = 5
 
 
-def shut(problem: Problem, robot: Robot, grown: Grown, place: Point) -> Diagnosis | None:
-    """Why a robot cannot even stand at a place, or None when it can."""
+def shut(problem: Problem, robot: Robot, floor: Floor, place: Point) -> Diagnosis | None:
+    """Why a robot cannot even stand at a place, or None when it can; the floor is that of all its places."""
+    grown = floor.grown
     which = "start" if place == robot.start else "goal" if place == robot.goal else "via point"
-    missing = grown.rho - part_distances(grown.parts, np.array([place]))
-    worst = int(missing.argmax()) if len(missing) else -1
-    if worst >= 0 and missing[worst] > DISTANCE:
-        name = f'obstacle "{names_of(problem.obstacles, grown, np.array([worst]))[0]}"'
-        return _standing(robot, which, place, float(missing[worst]), name)
+    # the search keeps less from what one of the places is too near to: only those parts are looked at closely
+    parts = np.flatnonzero(grown.rho - floor.rho > DISTANCE)
+    missing = grown.rho[parts] - part_distances(grown.parts[parts], np.array([place]))
+    if missing.max(initial=0.0) > DISTANCE:
+        most = int(missing.argmax())
+        name = f'obstacle "{names_of(problem.obstacles, grown, parts[most : most + 1])[0]}"'
+        return _standing(robot, which, place, float(missing[most]), name)
     xmin, ymin, xmax, ymax = grown.box
     beyond = max(xmin - place[0], place[0] - xmax, ymin - place[1], place[1] - ymax)
     return _standing(robot, which, place, beyond, "the edge of the workspace") if beyond > DISTANCE else None
@@ -91,8 +95,9 @@ def given_too_near(problem: Problem, robot: Robot, grown: Grown, path: Path) -> 
     s = np.linspace(0.0, path.length, max(int(path.length / 0.02), 2))
     points = path.point(s)
     worst, place, name = 0.0, robot.start, "an obstacle"
-    for k in range(len(grown.parts)):
-        missing = grown.rho[k] - np.array([float(part_distances(grown.parts[k : k + 1], p[None])[0]) for p in points])
+    (left, lower), (right, upper) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    for k in Floor(grown, grown.rho).near_parts((left, lower, right, upper)).tolist():
+        missing = grown.rho[k] - distances(grown.parts[k], points)
         if missing.max() > worst:
             at = points[int(missing.argmax())]
             worst, place = float(missing.max()), (float(at[0]), float(at[1]))

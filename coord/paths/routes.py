@@ -24,7 +24,7 @@ from coord.model.problem import Problem
 from coord.model.profile import VelocityProfile
 from coord.model.result import Diagnosis
 from coord.model.robot import Limits, Robot
-from coord.model.route import Fit, Route, Shaped, Way
+from coord.model.route import Route, Shaped, Way
 from coord.paths import no_way
 from coord.paths.exponential import exponential
 from coord.paths.fitted import fitted
@@ -109,7 +109,7 @@ class _Router:
         """The route, or NoPlanError with the reason why there is none."""
         robot = self.robot
         for place in self.places:
-            if fault := no_way.shut(self.problem, robot, self.ground.grown, place):
+            if fault := no_way.shut(self.problem, robot, self.floor, place):
                 raise NoPlanError([fault])
         if robot.path:
             return self._given()
@@ -126,8 +126,7 @@ class _Router:
         if base is None:
             raise NoPlanError([no_way.no_room_to_turn(robot)])
         if not blockers:
-            shape = _used(self.shape, base.shaped) if base.bones.turns else "straight"
-            return Route(base.shaped.path, base.alone, shape, "", base.bones.length, (), *_extras(base))
+            return self._route_of(base, "", ())
         return self._on_a_side(base, blockers)
 
     def _on_a_side(self, base: _Candidate, blockers: Sequence[Blocker]) -> Route:
@@ -155,10 +154,11 @@ class _Router:
         best = _quickest(found)
         if robot.side == "quickest":
             best = _quickest([best, *self._changed(base, blockers, best)])
-        side_name = NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both"
-        path, extras = best.shaped.path, _extras(best)
-        shape = _used(self.shape, best.shaped)
-        return Route(path, best.alone, shape, side_name, best.bones.length, tuple(ways), *extras)
+        return self._route_of(best, NAMES[best.sides[0]] if len(set(best.sides)) == 1 else "both", tuple(ways))
+
+    def _route_of(self, one: _Candidate, side: str, ways: tuple[Way, ...]) -> Route:
+        made = one.shaped
+        return Route(made.path, one.alone, made.shape, side, one.bones.length, ways, made.fits, made.remarks)
 
     def _changed(self, base: _Candidate, blockers: Sequence[Blocker], best: _Candidate) -> list[_Candidate]:
         """The shortest ways that pass one blocker on the other side than the shortest, if they might be quicker."""
@@ -214,7 +214,7 @@ class _Router:
         same = [way.side for way in ways if way.length == chosen.path.length]
         side = asked or (same[0] if same else "both")
         alone = fastest(chosen.path, limits)
-        return Route(chosen.path, alone, _used("follow", chosen), side, shortest, ways, chosen.fits, chosen.remarks)
+        return Route(chosen.path, alone, chosen.shape, side, shortest, ways, chosen.fits, chosen.remarks)
 
     def _given(self) -> Route:
         """The polyline of the problem, with its corners rounded, if it keeps the distance."""
@@ -234,32 +234,24 @@ class _Router:
 
 def _shaped(shape: str, bones: Skeleton, limits: Limits, floor: Floor, *, is_direct: bool) -> Shaped | None:
     """A skeleton as a path; None where its turns find no room, which only places to pass bring about."""
+    if not bones.turns:
+        return Shaped(straight(bones.start, bones.goal), "straight")
     if shape == "exponential" and is_direct:
         return exponential(bones, limits, floor)
-    path = taut(bones, floor) if shape == "taut" else fitted(bones, limits, floor)
+    if shape == "taut":
+        path = taut(bones, floor)
+        return None if path is None else Shaped(path, shape)
+    path = fitted(bones, limits, floor)
     if path is None:
         return None
-    odd = shape in ("exponential", "follow")
-    return Shaped(
-        path, remarks=(f'Fitted turns instead of shape "{shape}": the robot has places to pass.',) if odd else ()
-    )
+    remark = f'Fitted turns instead of shape "{shape}": the robot has places to pass.'
+    return Shaped(path, "fitted", remarks=() if shape == "fitted" else (remark,))
 
 
 def _quickest(candidates: Sequence[_Candidate]) -> _Candidate:
-    """The quickest; right before left before others where they are equally quick."""
+    """The quickest; the first of those that are equally quick."""
     best = candidates[0]
     for one in candidates[1:]:
         if one.alone.arrival < best.alone.arrival * (1 - _QUICKER):
             best = one
     return best
-
-
-def _used(shape: str, shaped: Shaped) -> str:
-    """The shape that a path has, where another was asked for that did not apply."""
-    if shape == "follow" and shaped.remarks:
-        return "taut"
-    return "fitted" if shape == "exponential" and not shaped.fits else shape
-
-
-def _extras(one: _Candidate) -> tuple[tuple[Fit, ...], tuple[str, ...]]:
-    return one.shaped.fits, one.shaped.remarks

@@ -134,14 +134,7 @@ def passed(legs: Sequence[Skeleton], blockers: Sequence[Blocker]) -> tuple[int, 
 
 def _polyline(found: Skeleton) -> Array:
     """Points (n, 2) along a way: the ends and the middles of its turns."""
-    points = [found.start]
-    for turn in found.turns:
-        for share in (0.0, 0.5, 1.0):
-            angle = turn.first + turn.side * turn.angle * share
-            points.append(
-                (turn.center[0] + turn.radius * math.cos(angle), turn.center[1] + turn.radius * math.sin(angle))
-            )
-    return np.array([*points, found.goal])
+    return np.array([found.start, *(turn.at(share) for turn in found.turns for share in (0.0, 0.5, 1.0)), found.goal])
 
 
 def _first_heading(leg: Skeleton) -> float:

@@ -46,6 +46,11 @@ class Turn:
     first: float
     angle: float
 
+    def at(self, share: float) -> Point:
+        """The point [m] at a share of the turn."""
+        direction = self.first + self.side * self.angle * share
+        return (self.center[0] + self.radius * math.cos(direction), self.center[1] + self.radius * math.sin(direction))
+
 
 @dataclass(frozen=True, slots=True)
 class Skeleton:
@@ -210,11 +215,7 @@ class _Search:
 
 def _segments(found: Skeleton) -> Array:
     """The tangents (n, 4) [m] of a skeleton."""
-    points = [found.start]
-    for arc in found.turns:
-        for angle in (arc.first, arc.first + arc.side * arc.angle):
-            points.append((arc.center[0] + arc.radius * math.cos(angle), arc.center[1] + arc.radius * math.sin(angle)))
-    points.append(found.goal)
+    points = [found.start, *(arc.at(share) for arc in found.turns for share in (0.0, 1.0)), found.goal]
     return np.array(points).reshape(-1, 4)
 
 

@@ -44,20 +44,14 @@ def _arcs(skeleton: Skeleton) -> Path:
     pieces: list[tuple[float, float, float]] = []
     at, heading = skeleton.start, 0.0
     for k, turn in enumerate(skeleton.turns):
-        entry = _on(turn.center, turn.radius, turn.first)
-        exit_ = _on(turn.center, turn.radius, turn.first + turn.side * turn.angle)
         if k == 0:
             heading = turn.first + turn.side * math.pi / 2
-        _line(pieces, at, entry)
+        _line(pieces, at, turn.at(0.0))
         curvature = turn.side / turn.radius
         pieces.append((turn.radius * turn.angle, curvature, curvature))
-        at = exit_
+        at = turn.at(1.0)
     _line(pieces, at, skeleton.goal)
     return Path((*skeleton.start, heading), frozen(pieces, 3))
-
-
-def _on(center: Point, radius: float, angle: float) -> Point:
-    return (center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle))
 
 
 def _line(pieces: list[tuple[float, float, float]], a: Point, b: Point) -> None:

@@ -42,7 +42,7 @@ class Timing:
     Parameters
     ----------
     after, before : indices of the other robots that it lets pass, and that it precedes, where they meet.
-    how : "alone", "start delay", "splice" or "program".
+    how : "alone", "start delay", "splice", "program", "gentle" or "waited".
     lower_bound : arrival [s] that no motion can beat, given the motions of those before it.
     nodes : subproblems looked at; ``open`` : whether the search ended with some undecided.
     """

@@ -204,3 +204,13 @@ def test_a_fixed_square_passes_a_door_of_its_own_width_and_its_disc_does_not():
     assert found.certified
     with pytest.raises(NoPlanError):
         route(walls, footprint=Footprint(0.3 * math.sqrt(2)), clearance=0.0)
+
+
+@pytest.mark.parametrize(
+    ("shape", "made"), [("fitted", "fitted"), ("taut", "taut"), ("exponential", "fitted"), ("follow", "fitted")]
+)
+def test_a_route_names_the_shape_that_it_has(shape, made):
+    """Past a place beside the line only two shapes apply; the others say that their turns are fitted ones, and why."""
+    found = route([], via=((10.0, 9.0),), shape=shape)
+    assert found.shape == made
+    assert bool(found.remarks) == (shape != made)
