@@ -1,4 +1,4 @@
-"""Which places, segments and arcs keep the distance from grown obstacles: the tests behind the path search."""
+"""Which segments keep the distance from grown obstacles, and what is near a turn: behind the path search."""
 
 from __future__ import annotations
 
@@ -8,16 +8,11 @@ import shapely
 
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import Geometry
+from coord.geometry.spines import crossing, reaching
 from coord.model.arrays import Array
 
 #: [m] Contact is no hit: a tangent touches the disc it leaves.
 _TOUCH = 1e-9
-
-#: [1] A cosine above 1 by less than this is a contact.
-_GRAZE = 1e-9
-
-#: [rad] Blocked stretches of a circle shorter than this come from rounding at a contact.
-_SLIVER = 1e-7
 
 
 class Floor:
@@ -60,39 +55,47 @@ class Floor:
         return self.grown.edges[index], self.rho[self.grown.edge_parts[index]]
 
 
-def blocked_angles(
-    center: Array, radius: float, edges: Array, rho: Array, box: tuple[float, float, float, float]
-) -> Array:
-    """Open stretches (k, 2) [rad] of a circle that come nearer than rho (e,) to segments (e, 4) or leave the box.
+class Outlines:
+    """The segments of parts that joined one after the other, for looking up those near an arc."""
 
-    Each begins in [0, 2 pi) and may end beyond 2 pi. Exact: the circle meets the boundary of a segment
-    grown by rho (two half circles and two lines) at angles in closed form; between two of those angles
-    it is wholly inside or wholly outside, which its middle tells.
-    """
-    x, y = center.tolist()
-    reach = rho + radius
-    (ax, ay, bx, by), (xmin, ymin, xmax, ymax) = edges.T, box
-    near = (np.abs(ax + bx - 2 * x) < np.abs(ax - bx) + 2 * reach) & (
-        np.abs(ay + by - 2 * y) < np.abs(ay - by) + 2 * reach
-    )
-    is_inside = xmin < x - radius and x + radius < xmax and ymin < y - radius and y + radius < ymax
-    if is_inside and not near.any():
-        return np.empty((0, 2))
-    edges, rho = edges[near], rho[near]
-    angles = np.empty(0) if is_inside else _box_angles(center, radius, box)
-    if len(edges):
-        angles = np.concatenate([_segment_angles(center, radius, edges, rho), angles])
-    elif not len(angles):
-        return np.empty((0, 2))
-    cuts = np.unique(angles[np.isfinite(angles)] % (2 * np.pi))
-    if not len(cuts):
-        cuts = np.array([0.0])
-    ends = np.append(cuts[1:], cuts[0] + 2 * np.pi)
-    middle = (cuts + ends) / 2
-    at = center + radius * np.stack([np.cos(middle), np.sin(middle)], axis=1)
-    inside = (_segment_distance(at, edges) < rho[None] - _TOUCH).any(axis=1) | _outside(at, box)
-    inside &= ends - cuts > _SLIVER
-    return _joined(cuts[inside], ends[inside])
+    def __init__(self, floor: Floor) -> None:
+        """Begin without any."""
+        self._floor = floor
+        self.edges, self.rho, self.parts = np.empty((0, 4)), np.empty(0), np.empty(0, dtype=np.intp)
+        self._middles, self._widths = np.empty((2, 0)), np.empty((2, 0))  # twice the middle, and the grown size
+
+    def add(self, parts: npt.NDArray[np.intp]) -> None:
+        """Let the segments of more parts join."""
+        edges, rho = self._floor.edges_of(parts)
+        a, b = edges.T[:2], edges.T[2:]
+        self.edges, self.rho = np.concatenate([self.edges, edges]), np.concatenate([self.rho, rho])
+        owners = self._floor.grown.edge_parts[self._floor.grown.edges_of(parts)]
+        self.parts = np.concatenate([self.parts, owners])
+        self._middles = np.hstack([self._middles, a + b])
+        self._widths = np.hstack([self._widths, np.abs(a - b) + 2 * rho])
+
+    def near_turns(
+        self, centers: Array, parts: npt.NDArray[np.intp], radius: Array, first: Array, span: Array, known: int
+    ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Pairs of a turn and a segment, from number ``known`` on, whose grown box comes near the turn.
+
+        Turns (k,) go round corners of some parts in directions from ``first`` [rad] over ``span``. Segments of the
+        corner's own part count only where that is not convex, and never the two that meet at the corner: a turn in
+        the directions of the corner keeps its radius from those.
+        """
+        middle = first + span / 2
+        at = centers + radius[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
+        reach = 4 * radius * np.sin(span / 4)  # twice the distance of the ends of the turn from its middle
+        near = np.ones((len(radius), len(self.rho) - known), dtype=np.bool_)
+        for axis in (0, 1):
+            gap = np.abs(self._middles[axis, None, known:] - 2 * at[:, axis, None])
+            near &= gap < self._widths[axis, None, known:] + reach[:, None]
+        row, segment = np.nonzero(near)
+        segment += known
+        (x, y), (ax, ay, bx, by) = centers[row].T, self.edges[segment].T
+        meets = ((ax == x) & (ay == y)) | ((bx == x) & (by == y))
+        others = (self.parts[segment] != parts[row]) | ~(meets | self._floor.grown.convex[parts[row]])
+        return row[others], segment[others]
 
 
 class Screen:
@@ -101,11 +104,35 @@ class Screen:
     def __init__(self, floor: Floor, parts: npt.NDArray[np.intp]) -> None:
         """Index the chosen parts."""
         self._parts, self._rho = floor.grown.parts[parts], floor.rho[parts]
-        self._tree = shapely.STRtree(floor.boxes[parts])
+        self._tree, self._boxes = shapely.STRtree(floor.boxes[parts]), shapely.bounds(floor.boxes[parts])
+        self._spines = reaching(floor.grown.spines[parts], self._rho)
 
     def is_hit(self, segments: Array) -> npt.NDArray[np.bool_]:
-        """Whether segments (n, 4) come too near to any of the parts."""
-        return _any(len(segments), _near_pairs(self._tree, self._parts, self._rho, segments))
+        """Whether segments (n, 4) come too near to any of the parts.
+
+        Most of those that do cross the middle of a part: distances are measured for the rest only.
+        """
+        hit = np.zeros(len(segments), dtype=np.bool_)
+        if not len(self._rho) or not len(segments):
+            return hit
+        lines = shapely.linestrings(segments.reshape(-1, 2, 2))
+        line, part = self._tree.query(lines)
+        hit[line[crossing(segments[line, None], self._spines[part]).any(axis=1)]] = True
+        line, part = line[~hit[line]], part[~hit[line]]
+        met = _meet(segments[line], self._boxes[part])
+        line, part = line[met], part[met]
+        near = shapely.dwithin(self._parts[part], lines[line], np.maximum(self._rho[part] - _TOUCH, 0.0))
+        hit[line[near]] = True
+        return hit
+
+
+def _meet(segments: Array, boxes: Array) -> npt.NDArray[np.bool_]:
+    """Whether segments (n, 4) may meet boxes (n, 4) that their own boxes meet: have they corners on both sides."""
+    ax, ay, bx, by = segments.T
+    xmin, ymin, xmax, ymax = boxes.T
+    ux, uy = bx - ax, by - ay
+    offset = ux * (ymin + ymax - 2 * ay) - uy * (xmin + xmax - 2 * ax)
+    return np.asarray(np.abs(offset) <= np.abs(ux) * (ymax - ymin) + np.abs(uy) * (xmax - xmin) + _TOUCH)
 
 
 def _near_pairs(
@@ -136,71 +163,3 @@ def _boxes(grown: Grown, rho: Array) -> npt.NDArray[np.object_]:
         return np.empty(0, dtype=object)
     bounds = shapely.bounds(grown.parts)
     return np.asarray(shapely.box(*(bounds[:, :2] - rho[:, None]).T, *(bounds[:, 2:] + rho[:, None]).T))
-
-
-def _joined(starts: Array, ends: Array) -> Array:
-    """Stretches (k, 2) with those that follow each other without a gap made one."""
-    if not len(starts):
-        return np.empty((0, 2))
-    gap = starts[1:] > ends[:-1]
-    return np.stack([starts[np.append(True, gap)], ends[np.append(gap, True)]], axis=1)
-
-
-def _segment_angles(center: Array, radius: float, edges: Array, rho: Array) -> Array:
-    """Angles at which the circle meets the discs about the ends of edges and the lines beside them."""
-    found = []
-    for end in (edges[:, :2], edges[:, 2:]):
-        gap = end - center
-        far = np.hypot(gap[:, 0], gap[:, 1])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            opening = _arccos((far**2 + radius**2 - rho**2) / (2 * far * radius))
-        toward = np.arctan2(gap[:, 1], gap[:, 0])
-        found += [toward - opening, toward + opening]
-    along = edges[:, 2:] - edges[:, :2]
-    length = np.hypot(along[:, 0], along[:, 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        unit = along / length[:, None]
-        normal = np.stack([-unit[:, 1], unit[:, 0]], axis=1)
-        offset = ((center - edges[:, :2]) * normal).sum(axis=1)
-        toward = np.arctan2(normal[:, 1], normal[:, 0])
-        for line in (rho - offset, -rho - offset):
-            opening = _arccos(line / radius)
-            found += [toward - opening, toward + opening]
-    return np.concatenate(found)
-
-
-def _arccos(cosine: Array) -> Array:
-    """Arc cosine; at contact rounding may leave the cosine a hair above 1, and the contact must not be lost."""
-    return np.asarray(np.arccos(np.where(np.abs(cosine) < 1 + _GRAZE, np.clip(cosine, -1.0, 1.0), np.nan)))
-
-
-def _box_angles(center: Array, radius: float, box: tuple[float, float, float, float]) -> Array:
-    xmin, ymin, xmax, ymax = box
-    walls = (
-        (0.0, xmax - center[0]),
-        (np.pi / 2, ymax - center[1]),
-        (np.pi, center[0] - xmin),
-        (-np.pi / 2, center[1] - ymin),
-    )
-    angles: list[float] = []
-    for toward, line in walls:
-        if abs(line) <= radius:
-            opening = float(np.arccos(line / radius))
-            angles += [toward - opening, toward + opening]
-    return np.array(angles)
-
-
-def _segment_distance(points: Array, edges: Array) -> Array:
-    """Distances (p, e) [m] of points from segments."""
-    a, along = edges[:, :2], edges[:, 2:] - edges[:, :2]
-    gap = points[:, None] - a[None]
-    square = (along**2).sum(axis=1)
-    share = np.clip((gap * along[None]).sum(axis=2) / np.where(square > 0, square, 1.0), 0.0, 1.0)
-    rest = gap - share[..., None] * along[None]
-    return np.asarray(np.hypot(rest[..., 0], rest[..., 1]))
-
-
-def _outside(points: Array, box: tuple[float, float, float, float]) -> npt.NDArray[np.bool_]:
-    xmin, ymin, xmax, ymax = box
-    x, y = points.T
-    return np.asarray((x < xmin - _TOUCH) | (x > xmax + _TOUCH) | (y < ymin - _TOUCH) | (y > ymax + _TOUCH))

@@ -17,6 +17,7 @@ import shapely
 from coord.errors import InvalidValueError
 from coord.geometry.index import connected
 from coord.geometry.shapes import Geometry, core, meeting
+from coord.geometry.spines import spines
 from coord.model.arrays import Array
 from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Obstacle
@@ -52,7 +53,8 @@ class Grown:
 
     Parameters
     ----------
-    parts : (m,) array of shapes; ``rho`` : (m,) distance [m] that the robot's centre keeps from each.
+    parts : (m,) array of shapes; ``rho`` : (m,) distance [m] that the robot's centre keeps from each;
+        ``convex`` : (m,) whether it is convex; ``spines`` : (m, 2, 4) [m], segments inside it.
     corners : of all parts.
     edges : (e, 4) array [m], the segments of all parts (a point twice for a circle); ``edge_parts`` : (e,).
     touching : (t, 2) pairs of parts that touch, in both orders, ascending.
@@ -61,6 +63,8 @@ class Grown:
 
     parts: Geometry
     rho: Array
+    convex: npt.NDArray[np.bool_]
+    spines: Array
     corners: Corners
     edges: Array
     edge_parts: npt.NDArray[np.intp]
@@ -125,7 +129,17 @@ def grow(
     xmin, ymin, xmax, ymax = bounds
     box = (xmin - left + reach, ymin - lower + reach, xmax - right - reach, ymax - upper - reach)
     siblings = np.array(owners + list(range(len(owners), len(parts))), dtype=np.intp)
-    return Grown(parts, rho, outlines.corners(rho), edges, edge_parts, _touching(parts, siblings), box)
+    return Grown(
+        parts,
+        rho,
+        outlines.convex(len(parts)),
+        spines(parts, edges, edge_parts),
+        outlines.corners(rho),
+        edges,
+        edge_parts,
+        _touching(parts, siblings),
+        box,
+    )
 
 
 def _check_outlines(obstacles: Sequence[Obstacle]) -> None:
@@ -217,11 +231,20 @@ class _Outlines:
         """Segments (n, 4) and their parts."""
         return np.hstack([self.points, self.points[self.following]]), self.parts
 
-    def corners(self, rho: Array) -> Corners:
-        """The convex vertices with the cones of their outward normals."""
+    def _turns(self) -> tuple[Array, Array]:
+        """The edges (n, 2) that lead to the vertices, and how far [rad] the outline turns there, to the left if > 0."""
         along = self.points[self.following] - self.points
         before = along[self.preceding]
         turn = np.arctan2(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0], (before * along).sum(axis=1))
+        return before, turn
+
+    def convex(self, count: int) -> npt.NDArray[np.bool_]:
+        """Which of so many parts have no vertex that turns the other way."""
+        return np.asarray(np.bincount(self.parts[self._turns()[1] < 0], minlength=count) == 0)
+
+    def corners(self, rho: Array) -> Corners:
+        """The convex vertices with the cones of their outward normals."""
+        before, turn = self._turns()
         first = np.arctan2(-before[:, 0], before[:, 1])  # outward normal: the edge turned clockwise
         alone = self.following == np.arange(len(self.points))
         convex = np.flatnonzero((turn > 1e-12) & ~alone)

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coord.geometry.blocked import Floor, blocked_angles
+from coord.geometry.blocked import Floor
+from coord.geometry.circles import blocked_angles
 from coord.model.arrays import Array, Point
 from coord.paths.strokes import Stroke, distance, wrapped
 

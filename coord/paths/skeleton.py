@@ -8,19 +8,22 @@ nothing is the shortest of all.
 
 from __future__ import annotations
 
-import heapq
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from coord.geometry.blocked import Floor, blocked_angles
+from coord.geometry.blocked import Floor
+from coord.geometry.circles import blocked_angles
 from coord.geometry.growth import Grown
 from coord.geometry.shapes import part_distances
 from coord.model.arrays import Array, Point
-from coord.paths.tangents import END, TURN, TangentGraph, Tangents, turn, turns
+from coord.paths.cones import TURN
+from coord.paths.search import Arrival, Search
+from coord.paths.tangents import END, TangentGraph, turn
 from coord.tolerances import PLANNING_MARGIN
 
 #: Steps from a part that is hit to the parts beside it, pieces of one wall, that take part from then on, too.
@@ -29,11 +32,8 @@ _SIBLINGS = 4
 #: Parts this near to a segment that hits something take part, too: a share of the size of what it hits.
 _BESIDE = 0.25
 
-#: Tangents from one place that are tested at once; the rest waits until the search comes to them.
-_BATCH = 16
-
-#: [m] A way is not shorter than another by less than this.
-_SAME_LENGTH = 1e-12
+#: [rad] A smaller turn is none.
+_NO_TURN = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,14 +90,17 @@ def skeleton(floor: Floor, start: Point, goal: Point, longest: float = math.inf)
 def search(graph: TangentGraph, longest: float = math.inf) -> Skeleton | NoWay:
     """The same on a graph that may know something already, and may have barriers."""
     floor = graph.floor
+    progress = Search(graph)
     while True:
-        found = _Search(graph).run(longest)
-        if found is None:
+        way = progress.run(longest)
+        if way is None:
             return NoWay(tuple(sorted(graph.active.tolist())))
+        found = _traced(graph, way)
         hits = _newly_hit(floor, found, graph.active)
         if not len(hits):
             return found
         graph.activate(np.setdiff1d(_with_those_beside(floor, hits, found), graph.active))
+        progress.renew()
 
 
 def search_floor(grown: Grown, places: Sequence[Point]) -> Floor:
@@ -109,108 +112,17 @@ def search_floor(grown: Grown, places: Sequence[Point]) -> Floor:
     return Floor(grown, np.minimum(grown.rho + PLANNING_MARGIN, nearest))
 
 
-@dataclass(slots=True, eq=False)
-class _State:
-    """A node with the direction in which it is reached, and the tangents that lead on from it.
-
-    ``before`` : the state it is reached from, by number, -1 at the start, and ``left`` : in which direction that is
-    left. ``order`` : the tangents that the turn allows, the most promising first; ``estimate`` and ``reached`` :
-    for each of them the least length to the goal through it, and the length up to its end; ``queued`` : how many
-    of them were tested.
-    """
-
-    before: int
-    left: float
-    node: int
-    arriving: float
-    tangents: Tangents
-    order: npt.NDArray[np.intp]
-    estimate: Array
-    reached: Array
-    queued: int = 0
-
-
-class _Search:
-    """A* over tangents."""
-
-    def __init__(self, graph: TangentGraph) -> None:
-        self.graph = graph
-        self.states: list[_State] = []
-        self.expanded: dict[int, list[tuple[float, float]]] = {}
-        # least length to the goal, number, state, place in its order; -1: the rest of its tangents is to be tested
-        self.heap: list[tuple[float, int, int, int]] = []
-        self.pushed = 0
-
-    def run(self, longest: float) -> Skeleton | None:
-        """The shortest path among the active parts; None where there is none, or only longer ones."""
-        self._expand(-1, 0.0, END, 0.0, 0.0)
-        while self.heap and self.heap[0][0] <= longest:
-            _, _, number, place = heapq.heappop(self.heap)
-            if place < 0:
-                self._queue(number)
-                continue
-            state = self.states[number]
-            tangent, length = int(state.order[place]), float(state.reached[place])
-            leaving, arriving = float(state.tangents.leaving[tangent]), float(state.tangents.arriving[tangent])
-            node = int(state.tangents.nodes[tangent])
-            if node == END:
-                return self._result(number, leaving, length)
-            if not self._is_dominated(node, arriving, length):
-                self.expanded.setdefault(node, []).append((arriving, length))
-                self._expand(number, leaving, node, arriving, length)
-        return None
-
-    def _expand(self, before: int, left: float, node: int, arriving: float, length: float) -> None:
-        """Enter a new state: find where one can go on to, and how long the way would be at least."""
-        graph = self.graph
-        tangents = graph.tangents(node)
-        reached = length + tangents.lengths
-        chosen = np.arange(len(reached))
-        if node != END:
-            angle = turns(float(graph.side[node]), arriving, tangents.leaving)
-            reached += graph.radius[node] * angle
-            chosen = np.flatnonzero(angle <= graph.free_turn(node, arriving))
-        estimate = (reached + tangents.left)[chosen]
-        by_estimate = np.argsort(estimate, kind="stable")
-        order = chosen[by_estimate]
-        self.states.append(_State(before, left, node, arriving, tangents, order, estimate[by_estimate], reached[order]))
-        self._queue(len(self.states) - 1)
-
-    def _queue(self, number: int) -> None:
-        """Test some more of a state's tangents, queue those that hit nothing, and remember that there are more."""
-        state = self.states[number]
-        first, last = state.queued, min(state.queued + _BATCH, len(state.order))
-        state.queued = last
-        free = self.graph.are_free(state.tangents, state.order[first:last])
-        for place in (first + np.flatnonzero(free)).tolist():
-            self._push(number, place, float(state.estimate[place]))
-        if last < len(state.order):
-            self._push(number, -1, float(state.estimate[last]))
-
-    def _push(self, number: int, place: int, estimate: float) -> None:
-        self.pushed += 1
-        heapq.heappush(self.heap, (estimate, self.pushed, number, place))
-
-    def _is_dominated(self, node: int, arriving: float, length: float) -> bool:
-        """Whether somebody was here earlier along the turn, at no greater length, with the arc in between free."""
-        radius, side = float(self.graph.radius[node]), float(self.graph.side[node])
-        for earlier, shorter in self.expanded.get(node, ()):
-            angle = turn(side, earlier, arriving)
-            if shorter + radius * angle <= length + _SAME_LENGTH and angle <= self.graph.free_turn(node, earlier):
-                return True
-        return False
-
-    def _result(self, number: int, leaving: float, length: float) -> Skeleton:
-        found, graph = [], self.graph
-        while (state := self.states[number]).node != END:
-            side = float(graph.side[state.node])
-            angle = turn(side, state.arriving, leaving)
-            if angle > 1e-12:
-                x, y = graph.places[state.node].tolist()
-                found.append(Turn((x, y), float(graph.radius[state.node]), int(side), state.arriving, angle))
-            number, leaving = state.before, state.left
-        start, goal = (float(graph.start[0]), float(graph.start[1])), (float(graph.goal[0]), float(graph.goal[1]))
-        return Skeleton(start, goal, tuple(found[::-1]), length)
+def _traced(graph: TangentGraph, way: Sequence[Arrival]) -> Skeleton:
+    """The skeleton of a way, given by its arrivals, that at the goal first."""
+    found = []
+    for after, arrival in pairwise(way):
+        side = float(graph.side[arrival.node])
+        angle = turn(side, arrival.arriving, after.left)
+        if arrival.node != END and angle > _NO_TURN:
+            x, y = graph.places[arrival.node].tolist()
+            found.append(Turn((x, y), float(graph.radius[arrival.node]), int(side), arrival.arriving, angle))
+    start, goal = (float(graph.start[0]), float(graph.start[1])), (float(graph.goal[0]), float(graph.goal[1]))
+    return Skeleton(start, goal, tuple(found[::-1]), way[0].length)
 
 
 def _segments(found: Skeleton) -> Array:

@@ -8,7 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coord.geometry.blocked import Floor, blocked_angles
+from coord.geometry.blocked import Floor
+from coord.geometry.circles import blocked_angles
 from coord.geometry.growth import grow
 from coord.model.footprint import Footprint
 from coord.model.obstacle import Circle, Polygon, rectangle
