@@ -127,7 +127,7 @@ class Screen:
 
 
 def _meet(segments: Array, boxes: Array) -> npt.NDArray[np.bool_]:
-    """Whether segments (n, 4) may meet boxes (n, 4) that their own boxes meet: have they corners on both sides."""
+    """Whether boxes (n, 4) have corners on both sides of the lines through segments (n, 4), one by one."""
     ax, ay, bx, by = segments.T
     xmin, ymin, xmax, ymax = boxes.T
     ux, uy = bx - ax, by - ay

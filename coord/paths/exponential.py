@@ -31,9 +31,12 @@ from coord.paths.skeleton import Skeleton
 from coord.paths.taut import taut
 from coord.tolerances import SAME_PLACE
 
-#: Distances of the feet from the obstacle in units of its height, and exponents of the join, that are tried.
+#: What is tried: distances of the feet from the obstacle in units of its height, and the shares of the height between
+#: which the flanks are fitted, all with the first exponent of the join; then the other exponents with the best of them.
 _REACHES = (1.0, 0.5, 1.5, 2.5, 4.0)
-_JOINS = (1.5, 2.0, 3.0)
+_SHARES = ((0.02, 0.7), (0.1, 0.7), (0.1, 0.9), (0.2, 0.9), (0.02, 0.5))
+_JOINS = (2.0, 1.2, 1.5, 3.0, 4.5)
+_BEST = 3
 
 #: A foot takes up to this share of the room before an obstacle; B h, the slope of a flank at the top, is not larger.
 _ROOM, _STEEPEST = 0.8, 8.0
@@ -138,9 +141,11 @@ def _bend(line: Line, detour: Detour, limits: Limits) -> _Bend | set[int] | str:
     """The quickest curve past a detour that keeps the distance; or the parts that are still in its way; or why not."""
     rooms = _ROOM * (detour.first - detour.least), _ROOM * (detour.most - detour.last)
     feet = {(min(r * detour.height, rooms[0]), min(r * detour.height, rooms[1])): None for r in _REACHES}
-    fitted_flanks = [found for found in (flanks(detour, reach) for reach in feet) if found is not None]
-    bends = [_raised(line, found, p, 1.0) for found, p in product(fitted_flanks, _JOINS)]
+    found_flanks = [flanks(detour, reach, shares) for shares, reach in product(_SHARES, feet)]
+    bends = [_raised(line, one, _JOINS[0], 1.0) for one in found_flanks if one is not None]
     options = _timed(line, [bend for bend in bends if bend is not None], limits)
+    joined = [_raised(line, bend.curve.flanks, p, 1.0) for bend, p in product(options[:_BEST], _JOINS[1:])]
+    options = _timed(line, options + [bend for bend in joined if bend is not None], limits)
     if not options:
         return f"the detour {_where(detour)} has too little room for its feet"
     more: set[int] = set()

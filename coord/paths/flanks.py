@@ -27,10 +27,6 @@ from coord.tolerances import SAME_PLACE
 #: Points of the hull that a flank is fitted to.
 _POINTS = 60
 
-#: Shares of the height between which points are fitted. What is higher belongs to the flat top: along a roof that
-#: hardly rises an exponential would hardly fall, and would need a floor's length to do so.
-_LOW, _HIGH = 0.02, 0.7
-
 #: Shares of the height at which the exponential is cut: the first, or the next where there is no room for its tail.
 _CUTS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4)
 
@@ -110,14 +106,18 @@ class Curve:
         return values[0], values[1], values[2]
 
 
-def flanks(detour: Detour, reach: tuple[float, float]) -> Flanks | None:
-    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope; None where a flank is upright."""
+def flanks(detour: Detour, reach: tuple[float, float], shares: tuple[float, float]) -> Flanks | None:
+    """Fit both flanks, with feet ``reach`` [m] before and behind the envelope; None where a flank is upright.
+
+    ``shares`` : of the height, between which points are fitted. What is higher belongs to the flat top: along a roof
+    that hardly rises an exponential would hardly fall, and would need a floor's length to do so.
+    """
     x = np.concatenate([[detour.first - reach[0]], detour.x, [detour.last + reach[1]]])
     y = np.concatenate([[0.0], detour.envelope, [0.0]])
     hull = _upper_hull(x, y)
     tops = hull[hull[:, 1] >= detour.height * (1 - 1e-9)]
-    rise = _points(hull[hull[:, 0] <= tops[0, 0]], detour.height)
-    fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), detour.height) * (-1, 1)
+    rise = _points(hull[hull[:, 0] <= tops[0, 0]], shares, detour.height)
+    fall = _points(hull[hull[:, 0] >= tops[-1, 0]][::-1] * (-1, 1), shares, detour.height) * (-1, 1)
     if any(np.ptp(points[:, 0]) < SAME_PLACE or points[:, 1].min() <= 0 for points in (rise, fall)):
         return None
     up, lift_up = _fit("rise", rise, detour.middle)
@@ -152,9 +152,9 @@ def _upper_hull(x: Array, y: Array) -> Array:
     return np.array(hull)
 
 
-def _points(hull: Array, height: float) -> Array:
+def _points(hull: Array, shares: tuple[float, float], height: float) -> Array:
     """Points on the rising hull, evenly spaced in x, between two shares of the height."""
-    begin, end = np.interp([_LOW * height, _HIGH * height], hull[:, 1], hull[:, 0]).tolist()
+    begin, end = np.interp([share * height for share in shares], hull[:, 1], hull[:, 0]).tolist()
     x = np.linspace(begin, end, _POINTS)
     return np.column_stack([x, np.interp(x, hull[:, 0], hull[:, 1])])
 
