@@ -20,9 +20,9 @@ from coord.conflicts.chords import Chords, chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import ConflictRegion, conflict_regions
 from coord.coordination.blocking import arc_of, reaches_of
-from coord.coordination.order import topological_order, urgency
-from coord.coordination.records import reroute_record, unopened
-from coord.coordination.rerouting import without_rings
+from coord.coordination.order import order_of_groups, urgency
+from coord.coordination.records import reroute_record
+from coord.coordination.settled import settle
 from coord.errors import NoPlanError
 from coord.geometry.clusters import names_of
 from coord.geometry.growth import Grown, grow
@@ -80,7 +80,7 @@ class Deviation:
     """``robot`` goes before ``before`` and ``others`` more, all of them more urgent, because of a chain of arcs.
 
     The chain leads from ``robot`` to ``before``, the most urgent of them; the others go after that one by their
-    own urgency, so they need no arc.
+    own urgency, so they need no arc. It is empty where ``robot`` goes so early because others leave together with it.
     """
 
     robot: str
@@ -100,6 +100,7 @@ class Explanation:
     urgent : names, by priority, then the longest alone first, then as given; robots without a way are left out.
     order : names, first planned first; None where there is none, and ``diagnoses`` say why.
     deviations : one for each robot that goes before a more urgent one; ``rerouted`` : who left its quickest route.
+    together : groups of robots that stand in each other's way in a ring, and have to leave together.
     """
 
     problem: Problem
@@ -111,6 +112,7 @@ class Explanation:
     order: tuple[str, ...] | None
     deviations: tuple[Deviation, ...] = ()
     rerouted: tuple[Reroute, ...] = ()
+    together: tuple[tuple[str, ...], ...] = ()
     diagnoses: tuple[Diagnosis, ...] = ()
 
 
@@ -135,13 +137,14 @@ def explain(
         return Explanation(problem, options.shape, trips, (), (), (), None, diagnoses=lost)
     rest = dataclasses.replace(problem, robots=driving)
     quickest = [trip.quickest for trip in trips if trip.quickest is not None]
-    found = without_rings(
+    settled = settle(
         rest,
         quickest,
         options.shape,
         keep_paths=options.keep_paths,
         done=lambda done, total: progress("ways round", done, total),
     )
+    found = settled.found
     taken = {robot.name: route for robot, route in zip(driving, found.routes, strict=True)}
     trips = tuple(dataclasses.replace(trip, route=taken.get(trip.robot.name)) for trip in trips)
 
@@ -149,7 +152,7 @@ def explain(
     arcs = tuple(arc_of(driving, block) for block in found.blocks)
     names, arrivals = [robot.name for robot in driving], [trip.arrival for trip in trips if trip.arrival is not None]
     urgent = urgency([robot.priority for robot in driving], arrivals)
-    order = None if lost or found.left else topological_order(urgent, names, arcs)
+    order = None if lost or settled.hopeless else order_of_groups(urgent, names, arcs, found.together)
     ordered, wished = None if order is None else tuple(names[i] for i in order), tuple(names[i] for i in urgent)
     return Explanation(
         problem,
@@ -160,8 +163,9 @@ def explain(
         wished,
         ordered,
         () if ordered is None else _deviations(ordered, wished, arcs),
-        tuple(reroute_record(rest, quickest[i], found, i) for i in found.around),
-        (*lost, *unopened(rest, found, keep_paths=options.keep_paths)),
+        tuple(reroute_record(rest, quickest[i], found, i) for i in sorted({*found.around, *found.beside})),
+        tuple(tuple(names[i] for i in group) for group in found.together),
+        (*lost, *settled.hopeless),
     )
 
 
@@ -263,7 +267,7 @@ def _encounter(ego: _Lane, other: _Lane, region: ConflictRegion) -> Encounter:
 def _deviations(order: Sequence[str], urgent: Sequence[str], arcs: Sequence[BlockingArc]) -> tuple[Deviation, ...]:
     """Who goes before somebody more urgent, each with the arcs that lead to the most urgent robot after it.
 
-    There is such a chain: built from the back, the order put that most urgent robot b behind robot a because a was
+    But for robots that leave together with a more urgent one, there is such a chain: built from the back, the order put that most urgent robot b behind robot a because a was
     not free to go there, so a chain of arcs leads from a to a robot that was. That one goes after a and is at least
     as urgent as b, so it is b.
     """
@@ -299,7 +303,7 @@ def _towards(name: str, arcs: Sequence[BlockingArc]) -> dict[str, BlockingArc]:
 
 
 def _chain(first: str, last: str, step: Mapping[str, BlockingArc]) -> tuple[BlockingArc, ...]:
-    arcs = [step[first]]
-    while arcs[-1].then != last:
+    arcs = [step[first]] if first in step else []
+    while arcs and arcs[-1].then != last:
         arcs.append(step[arcs[-1].then])
     return tuple(arcs)

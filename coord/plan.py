@@ -7,11 +7,15 @@ from collections.abc import Callable
 
 from coord.coordination import diagnose
 from coord.coordination.blocking import arc_of, reaches_of
-from coord.coordination.order import topological_order, urgency
-from coord.coordination.prioritised import plan_in_order, scene_of
-from coord.coordination.records import plan_of, unopened
-from coord.coordination.rerouting import without_rings
-from coord.errors import NoPlanError
+from coord.coordination.extending import extended
+from coord.coordination.kept import Kept
+from coord.coordination.nearest import plan_nearest_first
+from coord.coordination.order import order_of_groups, urgency
+from coord.coordination.prioritised import plan_in_order
+from coord.coordination.records import plan_of
+from coord.coordination.scene import scene_of
+from coord.coordination.settled import settle
+from coord.errors import InvalidValueError, NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
 from coord.model.result import Clearance, Diagnosis, Plan, Result
@@ -24,7 +28,13 @@ from coord.verify import Report, verify
 Progress = Callable[[str, int, int], None]
 
 
-def plan(problem: Problem, options: Options | None = None, progress: Progress | None = None) -> Result:
+def plan(
+    problem: Problem,
+    options: Options | None = None,
+    progress: Progress | None = None,
+    *,
+    extend: Kept | None = None,
+) -> Result:
     """Plan the motion of all robots of a problem, and certify the plan.
 
     First every robot gets a path, the quickest round the obstacles; where robots on these paths would block each
@@ -32,6 +42,12 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     profiles, one after the other in an order that respects who blocks whom, each the quickest that is found
     against those before it. The plan is written out and verified, by the independent checker, as the very
     bytes that are handed back.
+
+    Parameters
+    ----------
+    progress : called with a stage's name, how much of it is done, and how much there is.
+    extend : what holds of a plan, from ``coord.coordination.kept.kept(problem, plan)``: the robots that it names keep
+        their motion, and only the others are planned, after them.
 
     Returns
     -------
@@ -42,7 +58,8 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     Raises
     ------
     InvalidValueError
-        When the outline of an obstacle crosses itself, which the reader of problem files would have told.
+        When the outline of an obstacle crosses itself, which the reader of problem files would have told; when
+        ``extend`` belongs to another problem.
     """
     began = time.perf_counter()
     options = options or Options()
@@ -50,8 +67,14 @@ def plan(problem: Problem, options: Options | None = None, progress: Progress | 
     def time_is_up() -> bool:
         return options.time_limit is not None and time.perf_counter() - began > options.time_limit
 
+    if extend is not None and extend.problem is not problem:
+        raise InvalidValueError([("extend", "extend must be what holds of a plan for this very problem")])
+    progress = progress or (lambda stage, done, total: None)
     try:
-        found = _planned(problem, options, progress or (lambda stage, done, total: None), time_is_up)
+        if extend is None:
+            found = _planned(problem, options, progress, time_is_up)
+        else:
+            found = extended(extend, options, progress, time_is_up)
     except NoPlanError as failure:
         seconds = time.perf_counter() - began
         return Result(problem, None, False, diagnoses=failure.diagnoses, stopped="no plan", seconds=seconds)
@@ -70,7 +93,7 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
             raise NoPlanError([diagnose.time_is_up(0, total)])
 
     quickest = find_routes(problem, options.shape, lambda done: progress("paths", done, total))
-    found = without_rings(
+    settled = settle(
         problem,
         quickest,
         options.shape,
@@ -78,21 +101,38 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
         done=lambda done, rings: progress("ways round", done, rings),
         check_time=check_time,
     )
-    if found.left:
-        raise NoPlanError(unopened(problem, found, keep_paths=options.keep_paths))
+    if settled.hopeless:
+        raise NoPlanError(settled.hopeless)
+    found = settled.found
 
     egos = []
     for robot, route in zip(robots, found.routes, strict=True):
         egos.append(ego(robot, route.path, route.alone))
         progress("alone", len(egos), total)
     urgent = urgency([robot.priority for robot in robots], [one.alone.arrival for one in egos])
-    order = topological_order(urgent, names, [arc_of(robots, block) for block in found.blocks])
+    arcs = [arc_of(robots, block) for block in found.blocks]
+    order = order_of_groups(urgent, names, arcs, found.together)
     if order is None:
-        raise RuntimeError("robots block each other in a ring although all rings were opened")
+        raise RuntimeError("robots block each other in a ring although none is left outside of groups")
     scene = scene_of(egos, reaches_of(robots, clearance), found.blocks, clearance)
-    timings = plan_in_order(
-        scene, order, lambda done: progress("velocities", done, total), time_is_up, profile=options.profile
-    )
+
+    def show(done: int) -> None:
+        progress("velocities", done, total)
+
+    if options.method == "nearest":
+        order, timings = plan_nearest_first(scene, names, arcs, show, time_is_up)
+    else:
+        timings = plan_in_order(
+            scene,
+            order,
+            show,
+            time_is_up,
+            profile=options.profile,
+            method=options.method,
+            certify=options.certify,
+            together=dict(zip(found.together, settled.otherwise, strict=True)),
+        )
+        order = list(timings)
     return plan_of(problem, quickest, found, egos, order, timings)
 
 

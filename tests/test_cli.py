@@ -234,7 +234,7 @@ def test_a_bad_value_in_the_table_of_options_names_the_file(coord: Any, planner:
 def test_the_help_of_plan_lists_the_values_that_are_supported_and_no_others(coord: Any):
     """The sentence that refuses an unknown value names the same ones."""
     text = coord("plan", "--help").out
-    later = {"stop", "nearest", "heading", "random", "search"}
+    later = {"heading", "random", "search"}
     for option in ("method", "shape", "order", "profile"):
         with pytest.raises(InvalidValueError) as refused_value:
             Options(**{option: "?"})  # type: ignore[arg-type]

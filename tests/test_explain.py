@@ -175,9 +175,9 @@ def test_a_robot_in_a_ring_is_told_as_re_routed_and_its_quickest_way_stays_known
     """Each starts on the other's line: one of them goes round, the arcs told are those of the new paths, no ring."""
     problem = scene(robot("red", (2.0, 6.0), (10.0, 6.0)), robot("blue", (6.0, 6.0), (2.0, 6.4)))
     told, kept = explain(problem), explain(problem, Options(keep_paths=True))
-    assert kept.order is None
+    assert kept.together == (("red", "blue"),)
     assert kept.rerouted == ()
-    assert [one.code for one in kept.diagnoses] == ["blocking-cycle"]
+    assert told.together == ()
     ((one,), trips) = told.rerouted, {trip.robot.name: trip for trip in told.trips}
     assert told.order is not None
     assert told.diagnoses == ()
@@ -213,12 +213,17 @@ def test_where_nobody_has_a_way_there_are_only_diagnoses():
     assert (told.encounters, told.arcs, told.order) == ((), (), None)
 
 
-def test_robots_that_swap_places_have_no_order_but_a_diagnosis_and_all_arcs():
-    """Starts and goals are handed over: four arcs, and no way round helps."""
-    told = explain(scene(robot("red", *ACROSS), robot("blue", *ACROSS[::-1])))
-    assert told.order is None
-    assert [one.code for one in told.diagnoses] == ["blocking-cycle"]
-    assert sorted((arc.first, arc.then) for arc in told.arcs) == [("blue", "red")] * 2 + [("red", "blue")] * 2
+def test_robots_that_swap_places_leave_together_or_have_no_order_but_a_diagnosis_and_all_arcs():
+    """Starts and goals are handed over: four arcs. One leaves the other room; on kept paths they cannot pass."""
+    problem = scene(robot("red", *ACROSS), robot("blue", *ACROSS[::-1]))
+    told, kept = explain(problem), explain(problem, Options(keep_paths=True))
+    assert told.together == kept.together == (("red", "blue"),)
+    assert (told.order, told.diagnoses) == (("red", "blue"), ())
+    assert [one.around for one in told.rerouted] == [()]
+    assert kept.order is None
+    assert [one.code for one in kept.diagnoses] == ["blocking-cycle"]
+    for one in (told, kept):
+        assert sorted((arc.first, arc.then) for arc in one.arcs) == [("blue", "red")] * 2 + [("red", "blue")] * 2
 
 
 def test_a_robot_that_only_the_comparison_of_both_sides_fails_is_not_lost(monkeypatch):

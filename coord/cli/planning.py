@@ -21,8 +21,11 @@ from coord.cli.app import (
     say,
 )
 from coord.cli.options import options_of
+from coord.errors import NotCertifiedError
 
 if TYPE_CHECKING:
+    from coord.coordination.kept import Kept
+    from coord.model.problem import Problem
     from coord.model.result import Result
 
 
@@ -33,7 +36,12 @@ def plan(
         Path | None, typer.Option("-o", "--out", metavar="OUTDIR", help="Where results go; plans/<name of PROBLEM>/.")
     ] = None,
     method: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Who gives way, and how. velocity: the later one, by its speed.")
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Who gives way, and how. velocity: the later one, by its speed (default); stop: the later one stops "
+            "before the conflict and waits; nearest: who is farther from it stops, whatever the priorities.",
+        ),
     ] = None,
     shape: Annotated[
         str | None,
@@ -60,6 +68,20 @@ def plan(
     keep_paths: Annotated[
         bool | None,
         typer.Option("--keep-paths/--re-route", help="Let no robot go round the others' starts and goals."),
+    ] = None,
+    certify: Annotated[
+        bool | None,
+        typer.Option(
+            "--certify/--no-certify",
+            help="Prove of every robot, as far as can be, that given those before it it could not be earlier.",
+        ),
+    ] = None,
+    extend: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PLAN",
+            help="Keep the motion of all robots of PLAN that are as they were; plan the others after them.",
+        ),
     ] = None,
     plots: Annotated[
         bool | None,
@@ -92,19 +114,23 @@ def plan(
         gap_target=gap_target,
         seed=seed,
         keep_paths=keep_paths,
+        certify=certify,
     )
+    holding = None if extend is None else _kept(read, extend)
     folder = out if out is not None else Path("plans") / problem.stem
     files.prepare(folder)
     with progress() as show:
-        result = make_plan(read, options, show)
+        result = make_plan(read, options, show) if holding is None else make_plan(read, options, show, extend=holding)
     written = [files.save(folder, result)]
     found = summary.certified_plan(result)
     if read.options.get("plots", False) if plots is None else plots:
         written += _draw(folder, result)
     seconds = perf_counter() - started
     if as_json:
-        print_json(summary.record(result, seconds))
+        print_json(summary.record(result, seconds, holding))
     else:
+        if holding is not None:
+            note(summary.kept_text(holding))
         if result.diagnoses:
             note(summary.paragraphs(result.diagnoses))
         if found is not None:
@@ -114,6 +140,22 @@ def plan(
             kind = "certified plan" if result.plan else "plan"
             note(f"There is no {kind}; the reasons are in {' and '.join(map(str, written))}")
     return NO_PLAN if result.plan is None else OK if found is not None else NOT_CERTIFIED
+
+
+def _kept(problem: Problem, file: Path) -> Kept:
+    """What holds of a plan file; one that is not certified itself is refused."""
+    from coord.coordination.kept import kept
+    from coord.output import files
+    from coord.output.plan_file import parse
+    from coord.verify import verify
+
+    data = files.read(file)
+    plan, report = parse(data, str(file)), verify(data)
+    if not report.certified:
+        why = report.faults[0].text if report.faults else report.verdict
+        remedy = "extend a plan that coord verify certifies, or plan all robots anew, without --extend"
+        raise NotCertifiedError(f"{file}: not certified: {why}; {remedy}")
+    return kept(problem, plan)
 
 
 def _draw(folder: Path, result: Result) -> list[Path]:

@@ -61,7 +61,7 @@ def window(
     """
     nodes = region.sigma
     if len(profile.jerks) == 0:
-        return _resting(region, other, 0.0, np.inf)
+        return _resting(region, other, 0.0, np.inf if parks else profile.arrival)
     if nodes[0] >= profile.length:
         return _resting(region, other, profile.arrival, np.inf) if parks else None
     times = time_at(profile, nodes)

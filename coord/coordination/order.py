@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import heapq
 from collections.abc import Sequence
 
@@ -42,6 +43,25 @@ def topological_order(urgent: Sequence[int], names: Sequence[str], arcs: Sequenc
             if not followers[leader]:
                 heapq.heappush(ready, (-rank[leader], leader))
     return backwards[::-1] if len(backwards) == len(names) else None
+
+
+def order_of_groups(
+    urgent: Sequence[int], names: Sequence[str], arcs: Sequence[BlockingArc], groups: Sequence[Sequence[int]]
+) -> list[int] | None:
+    """The same where groups of robots are planned together: a group as urgent as its first, its robots in a row.
+
+    Arcs inside a group do not count.
+    """
+    rank = {robot: position for position, robot in enumerate(urgent)}
+    members = {min(group, key=rank.__getitem__): sorted(group, key=rank.__getitem__) for group in groups}
+    head = {i: first for first, group in members.items() for i in group}
+    called = {name: names[head.get(i, i)] for i, name in enumerate(names)}
+    outer = [arc for arc in arcs if called[arc.first] != called[arc.then]]
+    between = [dataclasses.replace(arc, first=called[arc.first], then=called[arc.then]) for arc in outer]
+    order = topological_order(urgent, names, between)
+    if order is None:
+        return None
+    return [k for i in order if head.get(i, i) == i for k in members.get(i, [i])]
 
 
 def shortest_cycle(names: Sequence[str], arcs: Sequence[BlockingArc]) -> list[BlockingArc]:

@@ -33,13 +33,22 @@ class Rerouting:
     ----------
     routes, blocks : of all robots; without rings unless ``left`` has some.
     around : for each robot on a new path the blocks that it went round, and the robots of their ring.
-    left : one cycle for each ring that could not be opened.
+    left : one cycle for each ring that could not be opened, and ``together`` its robots: they have to leave together.
+    beside : for each robot of those that leaves others room to pass, which of them.
     """
 
     routes: tuple[Route, ...]
     blocks: tuple[Block, ...]
     around: dict[int, tuple[tuple[Block, ...], tuple[int, ...]]]
-    left: tuple[tuple[Block, ...], ...]
+    left: tuple[tuple[Block, ...], ...] = ()
+    together: tuple[tuple[int, ...], ...] = ()
+    beside: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+
+    @property
+    def between(self) -> tuple[Block, ...]:
+        """The blocks but for those between robots that have to leave together: there is an order that respects these."""
+        group = {i: number for number, members in enumerate(self.together) for i in members}
+        return tuple(block for block in self.blocks if group.get(block.first, -1) != group.get(block.then, -2))
 
 
 def without_rings(
@@ -69,7 +78,7 @@ def reroute(
     done: Callable[[int, int], None] = lambda count, total: None,
     check_time: Callable[[], None] = lambda: None,
 ) -> Rerouting:
-    """Open all rings of the blocking graph, if that can be done.
+    """Open all rings of the blocking graph that can be opened.
 
     While there is a ring, a robot of it is sent round all places where others rest: one that opens the ring alone if
     there is one, else one with the most blocks in the ring; of equals the one that loses the least time. In the end
@@ -78,19 +87,14 @@ def reroute(
 
     Parameters
     ----------
-    keep_paths : all robots keep their paths, and the rings are told.
+    keep_paths : all robots keep their paths, and the rings stay.
     done : called with the robots that are in no ring any more, and how many there were.
     check_time : called before each search of a way; may raise.
     """
     whole = rings(range(len(routes)), blocks)
-    if not whole:
-        return Rerouting(tuple(routes), tuple(blocks), {}, ())
+    if not whole or keep_paths:
+        return _rerouting(routes, blocks, {})
     search = _Search(problem, list(routes), blocks, shape, check_time)
-    # what no new path takes away: with rings of these all searching would be in vain
-    hopeless = [block for ring in whole for block in search.within(ring) if keep_paths or search.stays(block)]
-    left = rings(range(len(routes)), hopeless)
-    if left:
-        return Rerouting(tuple(routes), tuple(blocks), {}, _cycles(left, hopeless))
     total = still = sum(map(len, whole))
     for ring in whole:
         todo = [ring]
@@ -98,7 +102,6 @@ def reroute(
             part = todo.pop()
             chosen = search.choose(part)
             if chosen is None:
-                left.append(part)
                 continue
             search.take(*chosen, part)
             smaller = rings(part, search.within(part))
@@ -106,11 +109,18 @@ def reroute(
             if free := len(part) - sum(map(len, smaller)):
                 still -= free
                 done(total - still, total)
-        if not left:
-            search.give_back(ring)
-    now = search.blocks()
+        search.give_back(ring)
     around = {i: (search.gone_round(i), search.ring_of[i]) for i in sorted(search.ring_of)}
-    return Rerouting(tuple(search.routes), now, around, _cycles(left, now))
+    return _rerouting(search.routes, search.blocks(), around)
+
+
+def _rerouting(
+    routes: Sequence[Route],
+    blocks: Sequence[Block],
+    around: dict[int, tuple[tuple[Block, ...], tuple[int, ...]]],
+) -> Rerouting:
+    left = rings(range(len(routes)), blocks)
+    return Rerouting(tuple(routes), tuple(blocks), around, _cycles(left, blocks), tuple(map(tuple, left)))
 
 
 def _cycles(left: Sequence[Sequence[int]], blocks: Sequence[Block]) -> tuple[tuple[Block, ...], ...]:
@@ -192,12 +202,13 @@ class _Search:
         self.ring_of.setdefault(i, tuple(ring))
 
     def give_back(self, ring: Sequence[int]) -> None:
-        """Give robots of what was a ring their quickest paths back where no ring comes of it, the slowest first."""
+        """Give robots of what was a ring their quickest paths back where no more of it comes back, the slowest first."""
         changed = [i for i in ring if i in self.ring_of]
+        left = rings(ring, self.within(ring))
         for i in sorted(changed, key=lambda i: -self._extra(i, self.routes[i])):
             now = self.routes[i], self.driven[i]
             self.routes[i], self.driven[i] = self.first[i], self.driven_first[i]
-            if rings(ring, self.within(ring)):
+            if rings(ring, self.within(ring)) != left:
                 self.routes[i], self.driven[i] = now
             else:
                 del self.ring_of[i]

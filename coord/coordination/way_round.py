@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,10 +77,12 @@ def rests(problem: Problem) -> Rests:
     )
 
 
-def way_round(known: Rests, driving: int, route: Route, allowed: Set[Block], shape: str) -> Way | None:
+def way_round(
+    known: Rests, driving: int, route: Route, allowed: Set[Block], shape: str, also: Sequence[Obstacle] = ()
+) -> Way | None:
     """A robot's way round all places where others rest, but for those that it may run over; None where there is none.
 
-    Places far from its present route are only looked at when the way runs over one of them.
+    ``also`` : more obstacles to go round. Places far from its present route are only looked at when the way runs over one of them.
     """
     problem, robot = known.problem, known.problem.robots[driving]
     avoided = known.used.copy()
@@ -90,7 +92,7 @@ def way_round(known: Rests, driving: int, route: Route, allowed: Set[Block], sha
     near = _inside(known.places, ends.min(axis=0), ends.max(axis=0), known.reaches + robot.footprint.radius + room)
     for chosen in (avoided & near, avoided):
         bodies = dict.fromkeys(known.bodies[k] for k in np.flatnonzero(chosen).tolist())
-        alone = dataclasses.replace(problem, robots=(robot,), obstacles=(*problem.obstacles, *bodies))
+        alone = dataclasses.replace(problem, robots=(robot,), obstacles=(*problem.obstacles, *bodies, *also))
         try:
             (found,) = find_routes(alone, shape)
         except NoPlanError:

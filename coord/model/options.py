@@ -13,7 +13,7 @@ from coord.errors import InvalidValueError
 SHAPES: Final = ("fitted", "exponential", "taut", "follow")
 
 _CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
-    "method": ("velocity",),
+    "method": ("velocity", "stop", "nearest"),
     "shape": SHAPES,
     "order": ("priority",),
     "profile": ("gentle", "fastest"),
@@ -21,7 +21,7 @@ _CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
 
 #: Values that the contract names and later work brings.
 _LATER = {
-    "method": ("stop", "nearest"),
+    "method": (),
     "shape": (),
     "order": ("longest", "shortest", "heading", "random", "search"),
     "profile": (),
@@ -34,16 +34,21 @@ class Options:
 
     Parameters
     ----------
-    method : "velocity": by priority, the later robot changes its velocity.
+    method : how a collision is settled. "velocity": by priority, the later robot changes its velocity; "stop": by
+        priority, the later robot stops before the conflict, waits until the other has left it, and goes on; "nearest":
+        no priority, whoever is nearest to the conflict goes first and the other stops, which may jam.
     shape : "fitted": every turn as wide as pays in time; "exponential": detours along least-squares exponentials;
         "taut": the shortest way of arcs and tangents; "follow": along the edges of the obstacles.
     order : "priority": the user's priorities, else the longest alone first.
     profile : "gentle": whoever has to give way slows down in time and rolls, at a few per mille of its time;
-        "fastest": each robot arrives as early as it can.
+        "fastest": each robot arrives as early as it can. Robots that stop and go ("stop", "nearest") know only this.
     time_limit : wall time [s] after which a run without a plan gives up; None for no limit.
     gap_target : None; the gap at which a search over orders would end comes with that search.
     seed : of every random draw; nothing is drawn yet.
     keep_paths : every robot keeps its quickest path, also where robots on such paths block each other in a ring.
+    certify : spend the time to prove of every robot that, given those before it, it could not be much earlier: its
+        lower bound is raised until it is a thousandth below its arrival, or nothing more can be proved. Only for the
+        method "velocity".
     """
 
     method: str = "velocity"
@@ -54,6 +59,7 @@ class Options:
     gap_target: float | None = None
     seed: int = 0
     keep_paths: bool = False
+    certify: bool = False
 
     def __post_init__(self) -> None:
         faults = []

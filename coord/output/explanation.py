@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Final
 
@@ -68,6 +68,7 @@ def record(explanation: Explanation) -> dict[str, object]:
             }
             for one in explanation.deviations
         ],
+        "together": [list(group) for group in explanation.together],
         "rerouted": [
             {
                 "robot": one.robot,
@@ -209,15 +210,19 @@ def _order(explanation: Explanation) -> Iterator[str]:
         yield from paragraphs(rings).splitlines()
     if explanation.order is None:
         return
+    for group in explanation.together:
+        yield f"{listed(group)} stand in each other's way in a ring, so they leave together, if they can."
     yield from textwrap.wrap(", ".join(explanation.order), _WIDTH, break_long_words=False, break_on_hyphens=False)
     trips = {trip.robot.name: trip for trip in explanation.trips}
-    yield from (_deviation(one, trips) for one in explanation.deviations)
+    groups = {name: group for group in explanation.together for name in group}
+    yield from (_deviation(one, trips, groups.get(one.robot, ())) for one in explanation.deviations)
     if not explanation.deviations:
         yield "This is the order of the priorities; no arc forbids it."
 
 
-def _deviation(one: Deviation, trips: Mapping[str, Trip]) -> str:
+def _deviation(one: Deviation, trips: Mapping[str, Trip], group: Sequence[str]) -> str:
     reason = "; and ".join(_because(arc) for arc in one.chain)
+    reason = reason or f"it leaves together with {listed([name for name in group if name != one.robot])}"
     others = f' So it goes before {_count(one.others, "more robot")} behind "{one.before}", too.' if one.others else ""
     rule = _less_urgent(trips[one.robot], trips[one.before])
     return f'"{one.robot}" goes before "{one.before}" although {rule}: {reason}.{others}'

@@ -10,17 +10,23 @@ from coord.model.result import Clearance, Diagnosis, Plan, Result
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from coord.coordination.kept import Kept
+
 #: [s] A smaller delay rounds to 0.00 s.
 _LATE: Final = 0.005
 
+#: More robots than this are not named one by one when a plan is extended.
+_MOST_TOLD: Final = 20
 
-def record(result: Result, seconds: float) -> dict[str, object]:
+
+def record(result: Result, seconds: float, extended: Kept | None = None) -> dict[str, object]:
     """The object that ``coord plan --json`` prints; ``seconds`` is the wall time of the whole command.
 
-    The keys are always the same. Without a certified plan nobody has arrived, and every figure that a plan
-    would have is None.
+    The keys are always the same, and one more, "extended", where a plan was. Without a certified plan nobody has
+    arrived, and every figure that a plan would have is None.
     """
     plan = certified_plan(result)
+    more = {} if extended is None else {"extended": _kept_record(extended)}
     return {
         "certified": plan is not None,
         "robots": len(result.problem.robots),
@@ -34,6 +40,7 @@ def record(result: Result, seconds: float) -> dict[str, object]:
         "seconds": seconds,
         "order": list(plan.order) if plan else None,
         "diagnoses": [_diagnosis_record(diagnosis) for diagnosis in result.diagnoses],
+        **more,
     }
 
 
@@ -91,6 +98,16 @@ def table(result: Result, plan: Plan) -> RenderableType:
     return result_table
 
 
+def kept_text(extended: Kept) -> str:
+    """Who keeps its motion when a plan is extended, who is planned and why, and who is gone; for people."""
+    names, count = [robot.name for robot in extended.problem.robots], len(extended.parts)
+    told = [f'planned: "{names[i]}": {why}' for i, why in extended.anew.items()]
+    told += [f'dropped: "{name}": the problem has it no more' for name in extended.dropped]
+    told += [f'the priority of "{names[i]}" has changed: a matter for a full run' for i in extended.unheeded]
+    more = [f"and {len(told) - _MOST_TOLD} more"] if len(told) > _MOST_TOLD else []
+    return "\n".join([f"kept: {count} robot{'' if count == 1 else 's'}", *told[:_MOST_TOLD], *more])
+
+
 def paragraphs(diagnoses: Iterable[Diagnosis]) -> str:
     """Diagnoses for people: one paragraph each, the remedy on a line of its own."""
     return "\n\n".join(_paragraph(diagnosis) for diagnosis in diagnoses)
@@ -126,6 +143,16 @@ def _clearance_cells(clearance: Clearance | None, required: float) -> tuple[str,
     # cut, not rounded: 0.0499 m must not read as the 0.050 m that are required
     value = int(clearance.value * 1e4 + 1e-4) / 1e4
     return f"{value:.4f} m", f"{first} and {second} at {clearance.time:.2f} s; required {required:g} m"
+
+
+def _kept_record(extended: Kept) -> dict[str, object]:
+    names = [robot.name for robot in extended.problem.robots]
+    return {
+        "kept": [names[i] for i in sorted(extended.parts)],
+        "planned": [{"robot": names[i], "reason": why} for i, why in extended.anew.items()],
+        "dropped": list(extended.dropped),
+        "priority_unheeded": [names[i] for i in extended.unheeded],
+    }
 
 
 def _diagnosis_record(diagnosis: Diagnosis) -> dict[str, object]:

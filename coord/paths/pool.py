@@ -23,36 +23,36 @@ class Pool:
     @property
     def nodes(self) -> npt.NDArray[np.intp]:
         """To which node each leads."""
-        return self._whole[0]
+        return np.asarray(self._whole[0])
 
     @property
     def tested(self) -> npt.NDArray[np.intp]:
         """The round in which each was found free, UNTESTED or HIT."""
-        return self._whole[1]
+        return np.asarray(self._whole[1])
 
     @property
     def leaving(self) -> Array:
         """The direction [rad] from the corner it leaves to where it begins."""
-        return self._real[0]
+        return np.asarray(self._real[0])
 
     @property
     def arriving(self) -> Array:
         """The direction [rad] from the corner it leads to to where it ends."""
-        return self._real[1]
+        return np.asarray(self._real[1])
 
     @property
     def length(self) -> Array:
         """The length [m]."""
-        return self._real[2]
+        return np.asarray(self._real[2])
 
     @property
     def left(self) -> Array:
         """How far [m] it is from the end straight to the goal."""
-        return self._real[3]
+        return np.asarray(self._real[3])
 
     def segments(self, chosen: npt.NDArray[np.intp]) -> Array:
         """Both ends (k, 4) [m] of some tangents."""
-        return self._real[4:, chosen].T
+        return np.asarray(self._real[4:, chosen].T)
 
     def add(
         self, nodes: npt.NDArray[np.intp], *, leaving: Array, arriving: Array, starts: Array, ends: Array, left: Array

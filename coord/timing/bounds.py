@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.timing.ego import Ego, earliest, still_needed
 from coord.timing.meeting import Meeting
+from coord.timing.reach import Part, part
 from coord.tolerances import SAME_PLACE
 
 #: Combinations of before and after looked at for one robot's certified bound.
@@ -63,16 +64,25 @@ def could_hold_up(ego: Ego, meeting: Meeting, arrival: float) -> bool:
 def inner_claims(ego: Ego, meeting: Meeting) -> list[Claim]:
     """What is asked by the parts of a meeting that are truly forbidden."""
     found = []
-    for part in inner_regions(meeting.region, ego.length):
-        times = _moments(part, meeting.profile)
-        if not len(times):
-            continue
-        low, high = _ends(part, meeting.profile.state(times)[:, 0])
-        lasts = meeting.ends.other_parks and part.sigma[-1] >= meeting.profile.length
+    for times, low, high, lasts in _forbidden(ego, meeting):
         if lasts:
             times, low, high = np.append(times, np.inf), np.append(low, low[-1]), np.append(high, high[-1])
         found.append(_claim(ego, times, low, high, lasts))
     return found
+
+
+def inner_parts(ego: Ego, meeting: Meeting) -> list[Part]:
+    """The parts of a meeting that are truly forbidden, for ``coord.timing.outer``."""
+    return [part(ego, times, low, high, lasts=lasts) for times, low, high, lasts in _forbidden(ego, meeting)]
+
+
+def _forbidden(ego: Ego, meeting: Meeting) -> Iterator[tuple[Array, Array, Array, bool]]:
+    """For each forbidden part moments (m,) [s], the bounds (m,), (m,) [m] then, and whether the last hold for ever."""
+    for region in inner_regions(meeting.region, ego.length):
+        times = _moments(region, meeting.profile)
+        if len(times):
+            lasts = meeting.ends.other_parks and bool(region.sigma[-1] >= meeting.profile.length)
+            yield times, *_ends(region, meeting.profile.state(times)[:, 0]), lasts
 
 
 def _claim(ego: Ego, times: Array, low: Array, high: Array, lasts: bool) -> Claim:

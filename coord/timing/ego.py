@@ -16,6 +16,7 @@ from coord.model.arrays import Array
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Robot
+from coord.timing.bends import Passages, passages
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,6 +29,7 @@ class Ego:
     solo_bound : time [s] that no profile can beat, release included.
     launch, landing : ramps that bound how early it can be somewhere and how long it still needs.
     relaxed : its quickest motion with the jerk forgotten, from t = 0: between any two places it needs that time.
+    bends : what bends cost beyond that; None where the path has none.
     """
 
     robot: Robot
@@ -38,6 +40,7 @@ class Ego:
     launch: Ramp
     landing: Ramp
     relaxed: VelocityProfile
+    bends: Passages | None
 
     @property
     def length(self) -> float:
@@ -53,15 +56,18 @@ def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
     # no cap is reached anywhere on a path of bends only: the ramps may use the highest cap there is
     top = dataclasses.replace(limits, speed=max(caps.caps.tolist(), default=limits.speed))
     relaxed = without_jerk(path, limits)
-    bound = robot.release + solo_bound(path, limits)
-    return Ego(robot, path, caps, alone, min(bound, alone.arrival), launch(top), landing(top), relaxed)
+    bends = passages(path, limits, relaxed)
+    bound = robot.release + max(solo_bound(path, limits), 0.0 if bends is None else bends.total)
+    return Ego(robot, path, caps, alone, min(bound, alone.arrival), launch(top), landing(top), relaxed, bends)
 
 
 def earliest(one: Ego, s: Array) -> Array:
     """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]."""
-    return one.alone.departure + np.maximum(one.launch.time(s), time_at(one.relaxed, s))
+    later = 0.0 if one.bends is None else one.bends.later(s)
+    return one.alone.departure + np.maximum(one.launch.time(s), time_at(one.relaxed, s) + later)
 
 
 def still_needed(one: Ego, s: Array) -> Array:
     """The least times (m,) [s] that it still needs from the arc lengths s (m,) [m] to rest at its goal."""
-    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - time_at(one.relaxed, s))
+    longer = 0.0 if one.bends is None else one.bends.longer(s)
+    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - time_at(one.relaxed, s) + longer)

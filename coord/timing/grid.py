@@ -59,6 +59,12 @@ class Course:
         first, last = self.times[0], self.times[-1]
         return Course(departure + (self.times - first) * ((arrival - departure) / (last - first)), self.s)
 
+    def within(self, departure: float, arrival: float) -> Course:
+        """The same course from a departure until an arrival [s], later ones waited for at its end."""
+        keep = (self.times > departure) & (self.times < arrival)
+        times = np.concatenate([[departure], self.times[keep], [arrival]])
+        return Course(times, self.at(times))
+
     def cut(self, arrival: float, length: float) -> Course:
         """The same course, but at the goal by the arrival [s], and not beyond."""
         keep = (self.times < arrival) & (self.s < length)

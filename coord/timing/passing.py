@@ -16,20 +16,27 @@ from coord.alone.check import keeps_limits
 from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
 from coord.timing.bounds import Claim, are_compatible, could_hold_up, inner_claims, least_arrival, window_claim
+from coord.timing.closing import CLOSED, close_gap
 from coord.timing.delay import Contact, after_contact, before_contact, start_delay
 from coord.timing.ego import Ego
 from coord.timing.gentle import gentle
 from coord.timing.meeting import Meeting, first_violated
 from coord.timing.program import through_tube
-from coord.timing.splice import delayed_course, spliced
+from coord.timing.splice import spliced
 from coord.timing.tube import Tube, after_bound, before_bound
 from coord.tolerances import OPTIMAL
 
 #: [s] With so much less delay, the window that a delay is for is violated.
 _A_LITTLE = 1e-3
 
-#: [1] Bounds that lack more than this share of the arrival are worth some time.
-_NEARLY = 1e-3
+#: Relaxations solved for one robot to close the gap to its bound; more where proof is asked for.
+_PROGRAMS, _PROGRAMS_CERTIFY = 60, 3000
+
+#: [1] Where no proof is asked for, a gap below this share of the arrival is left as it is.
+_CLOSE_ENOUGH = 5e-3
+
+#: How a search goes by that has found nothing yet.
+_NONE = "none"
 
 #: Subproblems looked at for one robot before the best profile found is taken as it is.
 MOST_NODES = 60
@@ -44,7 +51,8 @@ class Timing:
     after, before : indices of the other robots that it lets pass, and that it precedes, where they meet.
     how : "alone", "start delay", "splice", "program", "gentle" or "waited".
     lower_bound : arrival [s] that no motion can beat, given the motions of those before it.
-    nodes : subproblems looked at; ``open`` : whether the search ended with some undecided.
+    nodes : subproblems looked at.
+    open : whether some choice of before or after was left undecided that might save a thousandth of the arrival.
     """
 
     profile: VelocityProfile
@@ -96,11 +104,13 @@ class _Search:
             self.best, self.how = profile, how
 
 
-def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False, profile: str = "fastest") -> Timing | None:
+def time_robot(
+    ego: Ego, meetings: list[Meeting], *, is_last: bool = False, profile: str = "fastest", certify: bool = False
+) -> Timing | None:
     """The quickest profile found for ego that is clear of all meetings.
 
-    None where even waiting at the start does not help, because another robot never leaves ego's way; with
-    an order that respects the blocking arcs this does not happen.
+    None where none is found. Then even waiting at the start does not help, because another robot comes there or
+    never leaves ego's way; with an order that respects the blocking arcs this does not happen.
 
     Parameters
     ----------
@@ -113,11 +123,21 @@ def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False, prof
     if violated is None:
         return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
     delayed = start_delay(ego.alone, meetings)
-    if delayed is None:
-        return None
-    search = _Search(ego, meetings, delayed, "start delay")
+    # where no delay helps, ego has to be gone before somebody comes: then anything is better than a time far away
+    search = _Search(ego, meetings, delayed or _far_away(ego, meetings), _NONE if delayed is None else "start delay")
     nodes, is_open = _branch_and_bound(search)
-    bound = _certified(search)
+    bound, near = _certified(search)
+    far = CLOSED if certify else _CLOSE_ENOUGH
+    if bound < search.best.arrival * (1 - (CLOSED if is_open else far)):
+        most = _PROGRAMS_CERTIFY if certify else _PROGRAMS
+        closing = close_gap(ego, meetings, near, search.best, bound, most=most, enough=far, decided=not is_open)
+        bound, is_open = closing.bound, not closing.is_decided
+        if closing.is_new:
+            search.take(closing.profile, "program")
+    else:
+        is_open = False
+    if search.how == _NONE:
+        return None
     if profile == "gentle":
         calm = gentle(ego, meetings, search.best, sorted(search.known))
         if calm is not None:
@@ -125,6 +145,11 @@ def time_robot(ego: Ego, meetings: list[Meeting], *, is_last: bool = False, prof
     if search.how == "start delay" and is_last:
         _give_way_on_the_move(search)
     return _finished(search.best, meetings, search.how, bound, nodes, is_open)
+
+
+def _far_away(ego: Ego, meetings: list[Meeting]) -> VelocityProfile:
+    """The profile alone so late that nobody who has a motion moves any more when it begins."""
+    return ego.alone.shifted(max(meeting.profile.arrival for meeting in meetings))
 
 
 def _give_way_on_the_move(search: _Search) -> None:
@@ -214,12 +239,13 @@ def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[Ve
     for profile in spliced(ego, afters, befores):
         if _keeps_choices(search, chosen, profile) and keeps_limits(profile, ego.robot.limits, ego.caps):
             return profile, "splice"
+    if not ego.caps.is_constant:  # a program needs a course there, which the outer program finds
+        return None, ""
     tube = Tube(
         [after_bound(search.window(index)) for index, passes_after in chosen.items() if passes_after],
         [before_bound(search.window(index)) for index, passes_after in chosen.items() if not passes_after],
     )
-    course = None if ego.caps.is_constant else delayed_course(ego, afters, befores)
-    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL), course)
+    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL))
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"
@@ -235,8 +261,10 @@ def _keeps_choices(search: _Search, chosen: dict[int, bool], profile: VelocityPr
     return True
 
 
-def _certified(search: _Search) -> float:
-    """An arrival that no motion can beat, from what is truly forbidden in the meetings that came up in the search.
+def _certified(search: _Search) -> tuple[float, list[int]]:
+    """An arrival [s] that no motion can beat, and the meetings, by index, that it follows from.
+
+    It comes from what is truly forbidden in the meetings that came up in the search.
 
     Leaving out a meeting never makes a bound too late. Where these few leave much open, all others are added that
     could hold ego up for longer.
@@ -244,12 +272,15 @@ def _certified(search: _Search) -> float:
     ego, arrival = search.ego, search.best.arrival
     claims = [claim for index in sorted(search.known) for claim in inner_claims(ego, search.meetings[index])]
     bound = max(ego.solo_bound, least_arrival(ego, claims, arrival))
-    if bound >= arrival * (1 - _NEARLY):
-        return bound
-    for index, meeting in enumerate(search.meetings):
-        if index not in search.known and could_hold_up(ego, meeting, bound):
-            claims += inner_claims(ego, meeting)
-    return max(bound, least_arrival(ego, claims, arrival))
+    if bound >= arrival * (1 - CLOSED):
+        return bound, sorted(search.known)
+    further = [
+        index
+        for index, meeting in enumerate(search.meetings)
+        if index not in search.known and could_hold_up(ego, meeting, bound)
+    ]
+    claims += [claim for index in further for claim in inner_claims(ego, search.meetings[index])]
+    return max(bound, least_arrival(ego, claims, arrival)), sorted({*search.known, *further})
 
 
 def _finished(

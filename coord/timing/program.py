@@ -8,7 +8,7 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,11 +32,17 @@ _ARRIVAL_STEP = 2e-3
 #: [m] An upper bound below this holds the robot at its start: it departs when the bound has risen above.
 _AT_START = 2e-3
 
+#: [s] So much later than on a course the robot may arrive at first.
+_LATER = (0.0, 1.0)
+
+#: [m] By so much the bounds are eased, one after the other; and how many times that may lack at the goal.
+_EASES, _LACK = (0.03, 0.015, 0.008, 0.004, 0.002, 0.001, 0.0), 3.0
+
 #: The search from above ends after so many arrivals, or when the last ones differ by less than this share.
 _FALLS, _NEAR = 10, 1e-3
 
 #: [s] How much earlier than on the last course the robot may enter a bend, at the price of the bend's cap until then.
-_LEADS = (3.0, 0.8, 0.1)
+_LEADS = (0.05, 0.0, 3.0, 0.8, 0.1)
 
 #: Samples of a profile for its course.
 _SAMPLES = 400
@@ -78,6 +84,7 @@ def smooth_through(
     attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
     best = None
     for _ in range(1 if ego.caps.is_constant else 1 + _CORRECTIONS):
+        course = None if course is None else course.until(attempt.departure, arrival)
         profile = _smooth(attempt, arrival, course, ease)
         if profile is None:
             return best
@@ -97,12 +104,15 @@ class _Attempt:
 
 
 def _through(attempt: _Attempt, least: float, most: float, course: Course | None) -> VelocityProfile | None:
-    reached, course = _reach(attempt, most, course)
-    if reached < 0:
-        return None
     if course is None:
+        if _reach(attempt, most, None)[0] < 0:
+            return None
         arrival = _rising(attempt, least, most)
     else:
+        first = _first(attempt, most, course)
+        if first is None:
+            return None
+        most, course = first
         arrival, course = _falling(attempt, least, most, course)
     for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
         at = min(arrival + pause, most)
@@ -112,6 +122,44 @@ def _through(attempt: _Attempt, least: float, most: float, course: Course | None
         if at == most:
             break
     return None
+
+
+def _first(attempt: _Attempt, most: float, course: Course) -> tuple[float, Course] | None:
+    """An arrival up to ``most`` that is possible, and its course; None where none is found.
+
+    The course is only rough, and a bend entered a moment too late can leave a narrow tube without any motion. So the
+    program is solved with all bounds eased, then less and less so, each time with the bends where the last solution
+    has them. That is tried with the course's own arrival, and with a little more time.
+    """
+    end = float(course.times[-1])
+    for more in _LATER:
+        arrival = min(end + more, most)
+        eased = _eased(attempt, arrival, course)
+        if eased is not None:
+            return arrival, eased
+        if arrival == most:
+            break
+    return None
+
+
+def _eased(attempt: _Attempt, arrival: float, course: Course) -> Course | None:
+    """The course of a motion that is beyond its goal by the arrival; None where none is found."""
+    length = attempt.ego.length
+    for ease in _EASES:
+        for lead in _LEADS[:2]:
+            times = _knots(attempt, arrival, course)
+            if times is None:
+                return None
+            now = course.within(attempt.departure, arrival)
+            cells = cells_in(attempt.tube, times, length, attempt.ego.caps, now, lead)
+            cells = replace(cells, upper=cells.upper + ease, lower=cells.lower - ease)
+            states = farthest_way(cells, attempt.limits)
+            if states is not None and states[-1, 0] >= length - _LACK * ease:
+                course = course_through(times, states)
+                break
+        else:
+            return None
+    return course
 
 
 def _rising(attempt: _Attempt, least: float, most: float) -> float:
@@ -141,7 +189,9 @@ def _falling(attempt: _Attempt, least: float, most: float, course: Course) -> tu
         if not low < trial < arrival - _ARRIVAL_STEP:
             trial = (low + arrival) / 2
         reached, better = _reach(attempt, trial, course.cut(trial, ego.length))
-        if reached >= 0 and better is not None:
+        if reached < 0:
+            better = _eased(attempt, trial, course.cut(trial, ego.length))
+        if better is not None:
             arrival, course = trial, better
         else:
             low = trial
@@ -161,8 +211,10 @@ def _reach(attempt: _Attempt, arrival: float, course: Course | None) -> tuple[fl
         times = _knots(attempt, arrival, course)
         if times is None:
             break
-        now = None if course is None else course.until(attempt.departure, arrival)
+        now = None if course is None else course.within(attempt.departure, arrival)
         states = farthest_way(cells_in(attempt.tube, times, ego.length, ego.caps, now, lead), attempt.limits)
+        if states is None and lead == _LEADS[0]:
+            break  # later leads ask for more
         if states is None or states[-1, 0] - ego.length <= reached:
             continue
         reached = float(states[-1, 0]) - ego.length
@@ -176,7 +228,7 @@ def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: floa
     if times is None:
         return None
     if course is not None:
-        course = course.until(float(times[0]), arrival)
+        course = course.within(float(times[0]), arrival)
     cells = cells_in(attempt.tube, times, ego.length, ego.caps, course)
     jerks = smoothest(cells, attempt.limits, ego.length, ease)
     if jerks is None:
@@ -188,7 +240,7 @@ def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: floa
 
 
 def _knots(attempt: _Attempt, arrival: float, course: Course | None) -> Array | None:
-    borders = [] if course is None else border_times(attempt.ego.caps, course.until(attempt.departure, arrival))
+    borders = [] if course is None else border_times(attempt.ego.caps, course.within(attempt.departure, arrival))
     return time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, borders)
 
 

@@ -99,14 +99,20 @@ def test_a_robot_at_its_goal_arrives_at_its_release_and_is_an_obstacle():
     assert set(on_it.diagnoses[0].robots) == {"rests", "goes"}
 
 
-def test_robots_that_swap_places_on_one_line_are_named_with_both_places():
-    """No order helps: exit with a sentence, no plan, no document."""
-    result = plan(Problem("swap", FLOOR, (robot("a", (-5.0, 0.0), (5.0, 0.0)), robot("b", (5.0, 0.0), (-5.0, 0.0)))))
-    assert (result.plan, result.certified, result.document) == (None, False, b"")
-    (diagnosis,) = result.diagnoses
+def test_robots_that_swap_places_on_one_line_pass_each_other():
+    """No order helps, so they leave together, and one leaves the other room; on kept paths the two are named."""
+    swap = Problem("swap", FLOOR, (robot("a", (-5.0, 0.0), (5.0, 0.0)), robot("b", (5.0, 0.0), (-5.0, 0.0))))
+    result = plan(swap)
+    assert result.certified
+    assert result.plan.blocking == ()
+    (beside,) = result.plan.rerouted
+    assert "room to pass" in beside.text
+    assert max(one.arrival - one.solo_arrival for one in result.plan.robots) < 1.0
+    kept = plan(swap, Options(keep_paths=True))
+    assert (kept.plan, kept.certified, kept.document) == (None, False, b"")
+    (diagnosis,) = kept.diagnoses
     assert diagnosis.code == "blocking-cycle"
-    assert '"a"' in diagnosis.text
-    assert '"b"' in diagnosis.text
+    assert '"a" and "b" cannot pass each other, at whatever speeds' in diagnosis.text
 
 
 @pytest.mark.parametrize("failing", ["finds none", "library"])
@@ -138,3 +144,15 @@ def test_a_robot_that_waits_does_not_leave_before_its_release(monkeypatch):
     found = plan(dataclasses.replace(problem, robots=(problem.robots[0], late))).plan
     assert found.robots[1].profile.departure == 500.0
     assert found.robots[1].arrival == found.robots[1].solo_arrival
+
+
+def test_where_stop_and_go_fails_a_robot_waits_until_all_near_it_have_arrived(monkeypatch):
+    """The last resort is the same for every method."""
+
+    def fails(*_):
+        raise SolverError("out of order")
+
+    monkeypatch.setattr("coord.coordination.prioritised.stop_robot", fails)
+    result = plan(star(3), Options(method="stop"))
+    assert result.certified
+    assert {one.how for one in result.plan.robots} == {"waited"}

@@ -184,16 +184,19 @@ def test_kept_paths_lead_to_the_diagnosis_of_each_ring():
 
 
 def test_places_handed_over_in_a_ring_are_told_with_the_reason():
-    """Two robots that swap places: no way round helps, and the diagnosis says whose place it is; a third is not named."""
+    """Two robots that swap places in a lane: the diagnosis says whose place it is; a third is not named."""
+    walls = tuple(rectangle(f"wall {k}", (-29.9, y, 29.9, y + 0.2)) for k, y in enumerate((-0.7, 0.5)))
     problem = scene(
         robot("a", (-5.0, 0.0), (5.0, 0.0)),
         robot("b", (5.0, 0.0), (-5.0, 0.0)),
-        robot("c", (0.0, 0.0), (9.0, 9.0)),
+        robot("c", (0.0, 3.0), (9.0, 9.0)),
+        obstacles=walls,
     )
     (told,) = plan(problem).diagnoses
     assert set(told.robots) == {"a", "b"}
     places = [f'no way round: the {at} of "{name}" is there' for name in "ab" for at in ("start", "goal")]
     assert sum(told.text.count(place) for place in places) == 2
+    assert "cannot pass each other, at whatever speeds" in told.text
     assert "room" not in told.remedy
 
 

@@ -62,7 +62,7 @@ def test_the_text_names_every_arc_with_both_robots_and_the_place(eight: Explanat
 
 
 def swap() -> Explanation:
-    return story(robot("red", ACROSS), robot("blue", (ACROSS[1], ACROSS[0])))
+    return story(robot("red", ACROSS), robot("blue", (ACROSS[1], ACROSS[0])), keep_paths=True)
 
 
 def test_every_deviation_from_the_priorities_is_told_with_its_arc():
@@ -181,7 +181,7 @@ def test_a_robot_without_a_way_says_why_and_what_helps_and_ends_the_story_withou
 
 
 def test_a_ring_is_told_instead_of_an_order_with_what_helps():
-    """Two robots that swap places."""
+    """Two robots that swap places on one line and keep their paths."""
     told = swap()
     (ring,) = told.diagnoses
     assert len(lines_with(told, "blocking-cycle", ring.text)) == 1

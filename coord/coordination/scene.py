@@ -1,0 +1,58 @@
+"""Robots on their paths before any has a profile: who is near whom, who blocks whom, and where they meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from coord.conflicts.candidates import candidate_pairs
+from coord.conflicts.chords import Chords, chords
+from coord.coordination.blocking import Block
+from coord.coordination.company import meetings_of
+from coord.model.result import BlockingArc
+from coord.timing.ego import Ego
+from coord.timing.meeting import Meeting
+from coord.timing.passing import Timing
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Robots on their paths, who is near whom, and who blocks whom.
+
+    ``neighbours`` : for each robot the indices of those it might meet; ``blocked`` : (resting, driving, "start"
+    or "goal") for every arc of the blocking graph.
+    """
+
+    egos: Sequence[Ego]
+    chords: Sequence[Chords]
+    neighbours: Sequence[Sequence[int]]
+    blocked: frozenset[tuple[int, int, str]]
+    clearance: float
+
+    def meetings(self, i: int, others: Sequence[int], timings: Mapping[int, Timing]) -> list[Meeting]:
+        """All meetings of robot i with others that have a profile."""
+        ego, found = (i, self.egos[i].robot.footprint, self.chords[i]), []
+        for k in others:
+            other = (k, self.egos[k].robot.footprint, self.chords[k])
+            found += meetings_of(ego, other, timings[k].profile, self.blocked, self.clearance)
+        return found
+
+
+def scene_of(egos: Sequence[Ego], reaches: Sequence[float], blocks: Iterable[Block], clearance: float) -> Scene:
+    """The scene of robots that reach so far [m] from their paths, their share of the clearance included."""
+    chains = [chords(ego.path) for ego in egos]
+    neighbours: list[list[int]] = [[] for _ in egos]
+    for i, k in candidate_pairs(chains, reaches):
+        neighbours[i].append(k)
+        neighbours[k].append(i)
+    return Scene(egos, chains, neighbours, frozenset(blocks), clearance)
+
+
+def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozenset[tuple[int, int, str]]:
+    """Arcs as (resting robot, driving robot, where it rests)."""
+    index = {name: i for i, name in enumerate(names)}
+    places = set()
+    for arc in arcs:
+        resting, driving = (arc.first, arc.then) if arc.at == "start" else (arc.then, arc.first)
+        places.add((index[resting], index[driving], arc.at))
+    return frozenset(places)

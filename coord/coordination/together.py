@@ -1,0 +1,153 @@
+"""Robots that stand in each other's way in a ring leave together: planned one after the other, with deadlines.
+
+One after the other they could never come home, since each would have to go first. So whoever is planned keeps away
+from the places where those not planned yet rest, and where they still have to pass, until a deadline; and whoever
+is planned later has to be gone by the time the others come. Deadlines are raised until all fit. The guarantee of
+arrival does not cover such robots: a plan is found, or not.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from typing import TypeAlias
+
+import numpy as np
+
+from coord.alone.inverse import time_at
+from coord.conflicts.chords import chords
+from coord.conflicts.core import conflict_core
+from coord.conflicts.region import conflict_regions
+from coord.conflicts.rest import runs_over
+from coord.coordination.scene import Scene
+from coord.model.arrays import Point, frozen
+from coord.model.path import Path, straight
+from coord.model.profile import VelocityProfile
+from coord.timing.ego import Ego
+from coord.timing.meeting import Ends, Meeting
+from coord.timing.passing import Timing
+
+#: Rounds in which deadlines are raised, and by which factor.
+_ROUNDS, _RAISE = 30, 1.3
+
+#: Places of a path among which the nearest to a point is sought.
+_SAMPLES = 400
+
+#: A profile against some meetings; None where there is none.
+Solve: TypeAlias = Callable[[Ego, list[Meeting]], Timing | None]
+
+
+def plan_together(
+    scene: Scene, group: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
+) -> dict[int, Timing] | None:
+    """Profiles for all robots of a group, in the order in which they were planned; None where none were found.
+
+    Parameters
+    ----------
+    group : robots that stand in each other's way in a ring; planned in this order.
+    timings : of the robots planned before.
+    check_time : called before each robot; may raise.
+    """
+    deadlines: dict[tuple[int, int], float] = {}
+    for _ in range(_ROUNDS):
+        planned: dict[int, Timing] = {}
+        for i in group:
+            check_time()
+            found = _timed(scene, i, group, {**timings, **planned}, deadlines, solve)
+            if found is None:
+                break
+            planned[i] = found
+        if len(planned) == len(group):
+            return planned
+        stuck = group[len(planned)]
+        if not _raised(scene, planned, stuck, deadlines):
+            return None
+    return None
+
+
+def _timed(
+    scene: Scene,
+    i: int,
+    group: Sequence[int],
+    timings: Mapping[int, Timing],
+    deadlines: Mapping[tuple[int, int], float],
+    solve: Solve,
+) -> Timing | None:
+    """One robot against those that have a profile, and away from where the others of its group rest or will pass."""
+    meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
+    away = [
+        meeting
+        for k in group
+        if (i, k) in deadlines and k not in timings
+        for meeting in _kept_away(scene, i, k, deadlines[i, k])
+    ]
+    found = solve(scene.egos[i], meetings + away)
+    if found is None or not away:
+        return found
+    # a deadline is a choice, not a fact: what it costs proves nothing
+    return dataclasses.replace(
+        found,
+        after=_among(found.after, timings),
+        before=_among(found.before, timings),
+        lower_bound=scene.egos[i].solo_bound,
+        open=True,
+    )
+
+
+def _among(robots: Sequence[int], known: Collection[int]) -> tuple[int, ...]:
+    return tuple(k for k in robots if k in known)
+
+
+def _raised(
+    scene: Scene, planned: Collection[int], stuck: int, deadlines: dict[tuple[int, int], float]
+) -> bool:
+    """Let those planned wait longer for one that found no profile; whether any of them is in its way at all."""
+    found = False
+    for i in planned:
+        needs = max((time for _, time in _places(scene, i, stuck)), default=None)
+        if needs is not None:
+            deadlines[i, stuck] = _RAISE * deadlines[i, stuck] if (i, stuck) in deadlines else needs
+            found = True
+    return found
+
+
+def _kept_away(scene: Scene, i: int, k: int, deadline: float) -> Iterator[Meeting]:
+    """Robot k as if it stood, until a deadline, at its start on i's path and where it passes i's goal."""
+    ego, other = scene.egos[i].robot, scene.egos[k].robot
+    core = conflict_core(ego.footprint.core, other.footprint.core)
+    distance = ego.footprint.margin + other.footprint.margin + scene.clearance
+    still = VelocityProfile(frozen([deadline]), frozen([[0.0, 0.0, 0.0]], 3), frozen([]))
+    for place, _ in _places(scene, i, k):
+        if runs_over(straight(ego.start, ego.start), place, distance, core) is not None:
+            continue  # nobody can keep away from where it starts
+        goal_free = runs_over(straight(ego.goal, ego.goal), place, distance, core) is None
+        ends = Ends(start_free=True, goal_free=goal_free, other_waits=True, other_parks=False)
+        at = chords(straight(place, place))
+        for region in conflict_regions(
+            scene.chords[i], at, distance, core, start_free=True, goal_free=goal_free
+        ):
+            yield Meeting(region, k, still, ends, scene.egos[i].length)
+
+
+def _places(scene: Scene, i: int, k: int) -> Iterator[tuple[Point, float]]:
+    """Where robot k rests, or has to pass, in robot i's way; and when it is gone from there, alone."""
+    ego, other = scene.egos[i], scene.egos[k]
+    reach = ego.robot.footprint.radius + other.robot.footprint.radius + scene.clearance
+    if (k, i, "start") in scene.blocked:
+        yield other.robot.start, _time_at(other, reach)
+    if (i, k, "goal") in scene.blocked:
+        s = _nearest(other.path, ego.robot.goal)
+        x, y = other.path.point(np.array([s]))[0].tolist()
+        yield (x, y), _time_at(other, s + reach)
+
+
+def _time_at(ego: Ego, s: float) -> float:
+    """When a robot alone is at s [m], at the end where its path is shorter."""
+    return float(time_at(ego.alone, np.array([min(s, ego.length)]))[0])
+
+
+def _nearest(path: Path, place: Point) -> float:
+    """Where on a path [m] it comes about nearest to a place."""
+    s = np.linspace(0.0, path.length, _SAMPLES)
+    gap = path.point(s) - np.array(place)
+    return float(s[np.argmin(np.hypot(*gap.T))])
