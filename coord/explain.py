@@ -267,9 +267,9 @@ def _encounter(ego: _Lane, other: _Lane, region: ConflictRegion) -> Encounter:
 def _deviations(order: Sequence[str], urgent: Sequence[str], arcs: Sequence[BlockingArc]) -> tuple[Deviation, ...]:
     """Who goes before somebody more urgent, each with the arcs that lead to the most urgent robot after it.
 
-    But for robots that leave together with a more urgent one, there is such a chain: built from the back, the order put that most urgent robot b behind robot a because a was
-    not free to go there, so a chain of arcs leads from a to a robot that was. That one goes after a and is at least
-    as urgent as b, so it is b.
+    But for robots that leave together with a more urgent one, there is such a chain: built from the back, the order
+    put that most urgent robot b behind robot a because a was not free to go there, so a chain of arcs leads from a to
+    a robot that was. That one goes after a and is at least as urgent as b, so it is b.
     """
     rank = {name: position for position, name in enumerate(urgent)}
     chains: dict[str, dict[str, BlockingArc]] = {}

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 from coord.coordination import diagnose
+from coord.coordination.advice import advised
 from coord.coordination.blocking import arc_of, reaches_of
 from coord.coordination.extending import extended
 from coord.coordination.kept import Kept
@@ -76,11 +77,23 @@ def plan(
         else:
             found = extended(extend, options, progress, time_is_up)
     except NoPlanError as failure:
+        told = failure.diagnoses
+        if extend is None and options.time_limit is None:
+            told = advised(problem, told, lambda changed: _works(changed, options))
         seconds = time.perf_counter() - began
-        return Result(problem, None, False, diagnoses=failure.diagnoses, stopped="no plan", seconds=seconds)
+        return Result(problem, None, False, diagnoses=told, stopped="no plan", seconds=seconds)
     document = serialise(found)
     report = verify(document)
     return _result(problem, found, document, report, time.perf_counter() - began)
+
+
+def _works(problem: Problem, options: Options) -> bool:
+    """Whether there is a certified plan; it is not kept."""
+    try:
+        found = _planned(problem, options, lambda stage, done, total: None, lambda: False)
+    except (NoPlanError, InvalidValueError):
+        return False
+    return verify(serialise(found)).certified
 
 
 def _planned(problem: Problem, options: Options, progress: Progress, time_is_up: Callable[[], bool]) -> Plan:

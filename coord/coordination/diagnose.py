@@ -57,7 +57,7 @@ def cannot_pass(names: tuple[str, str], *, proved: bool) -> str:
 def leaves_room(name: str, rivals: Sequence[str], extra: float) -> str:
     """A robot on a path beside that of others with which it has to leave together."""
     others = _and_more([f'"{rival}"' for rival in rivals])
-    return f'"{name}" leaves {others} room to pass, {_cost(extra)}: they leave together, since each is in the other\'s way.'
+    return f'"{name}" leaves {others} room to pass, {_cost(extra)}: they have to leave together.'
 
 
 def handed_over(name: str, which: str) -> str:

@@ -43,34 +43,65 @@ def with_room_to_pass(
     """
     known = rests(problem)
     for i, k in separated_pairs(problem, found):
-        options = []
-        for driving, other in ((i, k), (k, i)):
-            changed = _beside(known, found, driving, other, shape, check_time)
-            if changed is not None:
-                options.append((changed.routes[driving].time - found.routes[driving].time, driving, changed))
-        if options:
-            found = min(options, key=lambda option: option[:2])[2]
+        shares = ((1.0, 0.0), (0.0, 1.0), (0.5, 0.5))
+        options = [_apart(known, found, (i, k), share, shape, check_time) for share in shares]
+        times = [math.inf if one is None else one.routes[i].time + one.routes[k].time for one in options]
+        found = options[int(np.argmin(times))] or found
     return found
 
 
-def _beside(
-    known: Rests, found: Rerouting, driving: int, other: int, shape: str, check_time: Callable[[], None]
+def _apart(
+    known: Rests,
+    found: Rerouting,
+    pair: tuple[int, int],
+    shares: tuple[float, float],
+    shape: str,
+    check_time: Callable[[], None],
 ) -> Rerouting | None:
-    """The same with one robot on a path that leaves another room to pass; None where there is none."""
-    problem = known.problem
-    if problem.robots[driving].path:
+    """The same with two robots on paths that leave room to pass; None where there are none.
+
+    ``shares`` : of the room, by how much of it each of the two leaves its path.
+    """
+    robots = known.problem.robots
+    if any(share > 0 and robots[k].path for k, share in zip(pair, shares, strict=True)):
         return None
-    rival = problem.robots[other]
-    allowed = frozenset(block for block in found.blocks if block.driving == driving)
-    for place in _places(problem, found, driving, other):
-        check_time()
-        body = Circle(f"{rival.name} on its way", place, rival.footprint.radius + _ROOM)
-        way = way_round(known, driving, found.routes[driving], allowed, shape, also=(body,))
-        if way is not None:
-            changed = _with(found, driving, other, way)
-            if not is_separated(problem, changed, driving, other):
+    for place, heading in _places(known.problem, found, *pair):
+        for side in (-1.0, 1.0):  # both keep to the right of each other, or both to the left
+            check_time()
+            changed: Rerouting | None = found
+            for driving, other, share in ((*pair, shares[0]), (*pair[::-1], shares[1])):
+                if share > 0 and changed is not None:
+                    sign = side if driving == pair[0] else -side
+                    body = _body(known.problem, driving, other, place, heading, sign, share)
+                    changed = _beside(known, changed, driving, other, body, shape)
+            if changed is not None and not is_separated(known.problem, changed, *pair):
                 return changed
     return None
+
+
+def _body(
+    problem: Problem, driving: int, other: int, place: Point, heading: float, side: float, share: float
+) -> Circle:
+    """What makes a robot pass a place at a share of the distance that two robots need from each other.
+
+    The whole distance: the other robot, as it stands there. Else something beside it, which leaves less room to the
+    one side (+1 left of the heading) than to the other.
+    """
+    own, rival, clearance = problem.robots[driving].footprint, problem.robots[other], problem.workspace.clearance
+    name = f"{rival.name} on its way"
+    if share == 1.0:
+        return Circle(name, place, rival.footprint.radius + _ROOM)
+    needed = own.radius + rival.footprint.radius + clearance + _ROOM
+    aside = -side * needed
+    center = (place[0] - aside * math.sin(heading), place[1] + aside * math.cos(heading))
+    return Circle(name, center, needed + share * needed - own.radius - clearance)
+
+
+def _beside(known: Rests, found: Rerouting, driving: int, other: int, body: Circle, shape: str) -> Rerouting | None:
+    """The same with one robot on a path round a body, over no place of rest that it did not run over before."""
+    allowed = frozenset(block for block in found.blocks if block.driving == driving)
+    way = way_round(known, driving, found.routes[driving], allowed, shape, also=(body,))
+    return None if way is None else _with(found, driving, other, way)
 
 
 def separated_pairs(problem: Problem, found: Rerouting) -> list[tuple[int, int]]:
@@ -80,23 +111,33 @@ def separated_pairs(problem: Problem, found: Rerouting) -> list[tuple[int, int]]
 
 
 def is_separated(problem: Problem, found: Rerouting, i: int, k: int) -> bool:
-    """Whether robot i could pass robot k neither after nor before, because places of rest of i are in the way of both.
+    """Whether nothing leads from where both robots start to where both have arrived.
 
-    Seen on outer bounds of their collision region: a planner cannot bring such a pair home.
+    A connected part of their collision region that reaches from the edge on which i rests at its start, or k at its
+    goal, to the edge on which i rests at its goal, or k at its start, lies across all such ways, forwards or back. Seen
+    on outer bounds: a planner cannot bring such a pair home.
     """
-    length = found.routes[i].path.length
-    return any(region.s_range[0] < 0 and region.s_range[1] > length for region in _regions(problem, found, i, k))
+    first, second = found.routes[i].path.length, found.routes[k].path.length
+    blocked = set(found.blocks)
+    waits, parks = Block(k, i, "start") in blocked, Block(k, i, "goal") in blocked
+    for region in _regions(problem, found, i, k):
+        low, high = region.s_range
+        before = low < 0 or (parks and region.sigma[-1] >= second)
+        after = high > first or (waits and region.sigma[0] <= 0)
+        if before and after:
+            return True
+    return False
 
 
 def is_proved_separated(problem: Problem, found: Rerouting, i: int, k: int) -> bool:
-    """The same seen on what is truly forbidden: then there are no motions at all on these paths.
-
-    A connected part of the region that reaches from the one's start to its goal leaves no way from (0, 0), where both
-    start, to where both have arrived, forwards or back.
-    """
-    length = found.routes[i].path.length
-    parts = (part for region in _regions(problem, found, i, k) for part in inner_regions(region, length))
-    return any(part.s_range[0] <= 0 and part.s_range[1] >= length for part in parts)
+    """The same seen on what is truly forbidden: then there are no motions at all on these paths."""
+    first, second = found.routes[i].path.length, found.routes[k].path.length
+    for part in (part for region in _regions(problem, found, i, k) for part in inner_regions(region, first)):
+        low, high = part.s_range
+        reaches = low <= 0 or part.sigma[-1] >= second, high >= first or part.sigma[0] <= 0
+        if all(reaches):
+            return True
+    return False
 
 
 def _regions(problem: Problem, found: Rerouting, i: int, k: int) -> tuple[ConflictRegion, ...]:
@@ -112,18 +153,23 @@ def _regions(problem: Problem, found: Rerouting, i: int, k: int) -> tuple[Confli
     )
 
 
-def _places(problem: Problem, found: Rerouting, driving: int, other: int) -> Iterator[Point]:
-    """Where one robot could go round another that it would meet head-on, the place where both would be first."""
+def _places(problem: Problem, found: Rerouting, i: int, k: int) -> Iterator[tuple[Point, float]]:
+    """Where two robots could pass each other, and i's heading there; the place where they would meet alone first."""
     routes, robots = found.routes, problem.robots
-    mine, theirs = (routes[k].alone.shifted(robots[k].release) for k in (driving, other))
+    mine, theirs = (routes[one].alone.shifted(robots[one].release) for one in (i, k))
     t = np.linspace(0.0, max(mine.arrival, theirs.arrival), _TIMES)
-    here, there = (routes[k].path.point(one.state(t)[:, 0]) for k, one in ((driving, mine), (other, theirs)))
+    path = routes[i].path
+    s = mine.state(t)[:, 0]
+    here, there = path.point(s), routes[k].path.point(theirs.state(t)[:, 0])
     nearest = int(np.argmin(np.hypot(*(here - there).T)))
-    meeting = tuple(((here[nearest] + there[nearest]) / 2).tolist())
-    path = routes[driving].path
-    along = path.point(path.length * (np.arange(_PLACES) + 1) / (_PLACES + 1)).tolist()
-    places: list[Point] = [(meeting[0], meeting[1]), *((x, y) for x, y in along)]
-    yield from sorted(places, key=lambda place: math.dist(place, meeting))
+    meeting = (here[nearest] + there[nearest]) / 2
+    along = path.length * (np.arange(_PLACES) + 1) / (_PLACES + 1)
+    places = np.vstack([meeting, path.point(along)])
+    headings = path.pose(np.append(s[nearest], along))[:, 2].tolist()
+    order = np.argsort(np.hypot(*(places - meeting).T), kind="stable").tolist()
+    for n in order:
+        x, y = places[n].tolist()
+        yield (x, y), headings[n]
 
 
 def _with(found: Rerouting, i: int, other: int, way: Way) -> Rerouting:

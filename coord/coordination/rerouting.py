@@ -46,7 +46,7 @@ class Rerouting:
 
     @property
     def between(self) -> tuple[Block, ...]:
-        """The blocks but for those between robots that have to leave together: there is an order that respects these."""
+        """The blocks but for those inside groups that have to leave together: some order respects all of these."""
         group = {i: number for number, members in enumerate(self.together) for i in members}
         return tuple(block for block in self.blocks if group.get(block.first, -1) != group.get(block.then, -2))
 
@@ -202,7 +202,7 @@ class _Search:
         self.ring_of.setdefault(i, tuple(ring))
 
     def give_back(self, ring: Sequence[int]) -> None:
-        """Give robots of what was a ring their quickest paths back where no more of it comes back, the slowest first."""
+        """Give robots of what was a ring their quickest paths back where no ring comes of it, the slowest first."""
         changed = [i for i in ring if i in self.ring_of]
         left = rings(ring, self.within(ring))
         for i in sorted(changed, key=lambda i: -self._extra(i, self.routes[i])):

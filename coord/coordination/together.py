@@ -27,8 +27,8 @@ from coord.timing.ego import Ego
 from coord.timing.meeting import Ends, Meeting
 from coord.timing.passing import Timing
 
-#: Rounds in which deadlines are raised, and by which factor.
-_ROUNDS, _RAISE = 30, 1.3
+#: By which factor deadlines are raised; and they end at so many times what all of the group need one after the other.
+_RAISE, _LATEST = 1.3, 2.0
 
 #: Places of a path among which the nearest to a point is sought.
 _SAMPLES = 400
@@ -49,7 +49,9 @@ def plan_together(
     check_time : called before each robot; may raise.
     """
     deadlines: dict[tuple[int, int], float] = {}
-    for _ in range(_ROUNDS):
+    before = [timings[k].profile.arrival for i in group for k in scene.neighbours[i] if k in timings]
+    latest = _LATEST * (max(before, default=0.0) + sum(scene.egos[i].alone.arrival for i in group))
+    while max(deadlines.values(), default=0.0) <= latest:
         planned: dict[int, Timing] = {}
         for i in group:
             check_time()
@@ -98,9 +100,7 @@ def _among(robots: Sequence[int], known: Collection[int]) -> tuple[int, ...]:
     return tuple(k for k in robots if k in known)
 
 
-def _raised(
-    scene: Scene, planned: Collection[int], stuck: int, deadlines: dict[tuple[int, int], float]
-) -> bool:
+def _raised(scene: Scene, planned: Collection[int], stuck: int, deadlines: dict[tuple[int, int], float]) -> bool:
     """Let those planned wait longer for one that found no profile; whether any of them is in its way at all."""
     found = False
     for i in planned:
@@ -123,9 +123,7 @@ def _kept_away(scene: Scene, i: int, k: int, deadline: float) -> Iterator[Meetin
         goal_free = runs_over(straight(ego.goal, ego.goal), place, distance, core) is None
         ends = Ends(start_free=True, goal_free=goal_free, other_waits=True, other_parks=False)
         at = chords(straight(place, place))
-        for region in conflict_regions(
-            scene.chords[i], at, distance, core, start_free=True, goal_free=goal_free
-        ):
+        for region in conflict_regions(scene.chords[i], at, distance, core, start_free=True, goal_free=goal_free):
             yield Meeting(region, k, still, ends, scene.egos[i].length)
 
 

@@ -82,7 +82,8 @@ def way_round(
 ) -> Way | None:
     """A robot's way round all places where others rest, but for those that it may run over; None where there is none.
 
-    ``also`` : more obstacles to go round. Places far from its present route are only looked at when the way runs over one of them.
+    ``also`` : more obstacles to go round. Places far from its present route are only looked at when the way runs over
+    one of them.
     """
     problem, robot = known.problem, known.problem.robots[driving]
     avoided = known.used.copy()
