@@ -9,6 +9,7 @@ arrival does not cover such robots: a plan is found, or not.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TypeAlias
 
@@ -30,6 +31,9 @@ from coord.timing.passing import Timing
 #: By which factor deadlines are raised; and they end at so many times what all of the group need one after the other.
 _RAISE, _LATEST = 1.3, 2.0
 
+#: Groups up to this size are planned in two orders; of others, up to so many robots are tried first.
+_SMALL, _MOST_FIRST = 4, 6
+
 #: Places of a path among which the nearest to a point is sought.
 _SAMPLES = 400
 
@@ -42,27 +46,43 @@ def plan_together(
 ) -> dict[int, Timing] | None:
     """Profiles for all robots of a group, in the order in which they were planned; None where none were found.
 
+    Where nobody in the group has a priority, and it is small, both directions of the order are compared.
+
     Parameters
     ----------
-    group : robots that stand in each other's way in a ring; planned in this order.
+    group : robots that stand in each other's way in a ring; planned in this order, or with another of them first.
     timings : of the robots planned before.
     check_time : called before each robot; may raise.
     """
+    orders = [[i, *(k for k in group if k != i)] for i in group[:_MOST_FIRST]]
+    if len(group) <= _SMALL and all(scene.egos[i].robot.priority is None for i in group):
+        found = [_in_order(scene, order, timings, solve, check_time) for order in (list(group), list(group[::-1]))]
+        sums = [math.inf if one is None else math.fsum(t.profile.arrival for t in one.values()) for one in found]
+        if min(sums) < math.inf:
+            return found[sums.index(min(sums))]
+        orders = orders[1:]
+    attempts = (_in_order(scene, order, timings, solve, check_time) for order in orders)
+    return next((one for one in attempts if one is not None), None)
+
+
+def _in_order(
+    scene: Scene, order: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
+) -> dict[int, Timing] | None:
+    """The same with the robots in this order."""
     deadlines: dict[tuple[int, int], float] = {}
-    before = [timings[k].profile.arrival for i in group for k in scene.neighbours[i] if k in timings]
-    latest = _LATEST * (max(before, default=0.0) + sum(scene.egos[i].alone.arrival for i in group))
+    before = [timings[k].profile.arrival for i in order for k in scene.neighbours[i] if k in timings]
+    latest = _LATEST * (max(before, default=0.0) + math.fsum(scene.egos[i].alone.arrival for i in order))
     while max(deadlines.values(), default=0.0) <= latest:
         planned: dict[int, Timing] = {}
-        for i in group:
+        for i in order:
             check_time()
-            found = _timed(scene, i, group, {**timings, **planned}, deadlines, solve)
+            found = _timed(scene, i, order, {**timings, **planned}, deadlines, solve)
             if found is None:
                 break
             planned[i] = found
-        if len(planned) == len(group):
+        if len(planned) == len(order):
             return planned
-        stuck = group[len(planned)]
-        if not _raised(scene, planned, stuck, deadlines):
+        if not _raised(scene, planned, order[len(planned)], deadlines):
             return None
     return None
 

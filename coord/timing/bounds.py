@@ -110,15 +110,18 @@ def are_compatible(after: Claim, before: Claim) -> bool:
     return bool(np.all(np.minimum(later[count], earlier[count] + before.comes) >= before.by))
 
 
-def least_arrival(ego: Ego, claims: Sequence[Claim], enough: float) -> float:
+def least_arrival(ego: Ego, claims: Sequence[Claim], enough: float, ahead_of: Claim | None = None) -> float:
     """The least arrival [s] over all combinations of before and after, as far as the claims tell; at most ``enough``.
+
+    ``ahead_of`` : one of the claims, which is passed before; it must be one that costs something when passed after.
 
     Best first over combinations: a claim whose one side is impossible is settled; else the claim that costs most
     when passed after is tried on both sides.
     """
     costly = sorted((claim for claim in claims if claim.after > ego.solo_bound), key=lambda claim: -claim.after)
     fits = [[claim is other or are_compatible(claim, other) for other in costly] for claim in costly]
-    queue: list[tuple[float, int, dict[int, bool]]] = [(ego.solo_bound, 0, {})]
+    chosen = {k: False for k, claim in enumerate(costly) if claim is ahead_of}
+    queue: list[tuple[float, int, dict[int, bool]]] = [(ego.solo_bound, 0, chosen)]
     pushed = itertools.count(1)
     for _ in range(_MOST_NODES):
         if not queue:

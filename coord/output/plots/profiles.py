@@ -10,12 +10,14 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.alone import alone
+from coord.output.plots.alternative import alternative
 from coord.output.plots.caps import speed_cap
 from coord.output.plots.style import ALARM, GREY, INK, colour, delay, find, is_late, new_figure, shown
 
@@ -48,6 +50,7 @@ def profiles(plan: Plan, robot: str | None = None) -> Figure:
         axes = [figure.add_subplot(cells[0])]
         axes += [figure.add_subplot(cells[row], sharex=axes[0]) for row in (1, 2)]
         profile(plan.robots[k], axes, colour(k), end, labels=place % columns == 0)
+        _tell_why(plan, k, axes)
         panels.append(axes)
     for panel in zip(*panels, strict=True):
         _share(list(panel))
@@ -91,6 +94,18 @@ def profile(robot: RobotPlan, axes: list[Axes], line_colour: str, end: float, la
     if labels:
         for ax, label in zip(axes, _QUANTITIES, strict=True):
             ax.set_ylabel(label, fontsize=8)
+
+
+def _tell_why(plan: Plan, k: int, axes: list[Axes]) -> None:
+    """Shade when the robot that the delay comes from is too near, and say what passing ahead of it would mean."""
+    choice = alternative(plan, plan.robots[k])
+    if choice is None:
+        return
+    other = [one.robot.name for one in plan.robots].index(choice.other)
+    for ax in axes:
+        ax.axvspan(choice.first, min(choice.last, ax.get_xlim()[1]), color=colour(other), alpha=0.2, lw=0, zorder=0)
+    told = axes[0].get_title("left") + f", after {shown(choice.other, 16)}\n({choice.text})"
+    axes[0].set_title(told, fontsize=8.5)
 
 
 def _columns(count: int) -> int:
@@ -140,6 +155,7 @@ def _legend(released: bool) -> list[Artist]:
         Line2D([], [], color=INK, lw=1.6, label="as planned (colours as on the floor)"),
         Line2D([], [], color=GREY, lw=1.0, ls=(0, (4, 2)), label="speed if alone on the floor"),
         Line2D([], [], color=ALARM, lw=0.7, label="the robot's limits (slower in bends)"),
+        Patch(facecolor=(GREY, 0.3), label="the one it lets pass is in its way"),
     ]
     if released:
         handles.append(Line2D([], [], color=GREY, lw=0.9, ls=":", label="released: may not leave earlier"))

@@ -15,6 +15,7 @@ from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.result import Plan, RobotPlan
 from coord.output.plots.alone import alone
+from coord.output.plots.alternative import Alternative, alternative
 from coord.output.plots.forbidden import Window, matters, passes, windows
 from coord.output.plots.labels import Clutter, Label, place
 from coord.output.plots.style import (
@@ -37,7 +38,7 @@ from coord.output.plots.style import (
 MOST_LISTED: Final = 14
 
 #: A robot that gives way on the move is shown rather than one that waits at its start, if its delay is not much less.
-_ON_THE_MOVE, _MUCH_LESS = ("splice", "program"), 0.2
+_ON_THE_MOVE, _MUCH_LESS = ("splice", "program", "gentle", "stop"), 0.2
 
 #: Shade of areas that are far from all that the robot does or would do.
 _PALE: Final = "#BBBBBB"
@@ -62,7 +63,8 @@ def st(plan: Plan, robot: str | None = None, ax: Axes | None = None) -> Figure:
         ax = new_figure(9.6, 5.2).add_subplot()
     found = windows(plan, ego, end)
     near = [matters(window, (ego.profile, free), end) for window in found]
-    handles = [_draw_window(ax, plan, ego, one, coloured) for one, coloured in zip(found, near, strict=True)]
+    choice = alternative(plan, ego)
+    handles = [_draw_window(ax, plan, ego, one, coloured, choice) for one, coloured in zip(found, near, strict=True)]
     ax.axhline(ego.path.length, color=INK, lw=0.8, ls=":")
     stay = plan.problem.workspace.after_arrival == "stay"
     ax.plot(*_curve(free, end if stay else free.arrival), color=GREY, lw=1.3, ls=(0, (4, 2)), zorder=4)
@@ -94,7 +96,9 @@ def _choose(plan: Plan) -> tuple[RobotPlan, str]:
     return best, ", the most delayed of those that give way on the move,"
 
 
-def _draw_window(ax: Axes, plan: Plan, ego: RobotPlan, window: Window, coloured: bool) -> Artist:
+def _draw_window(
+    ax: Axes, plan: Plan, ego: RobotPlan, window: Window, coloured: bool, choice: Alternative | None
+) -> Artist:
     name, k = window.robot.robot.name, plan.robots.index(window.robot)
     ink = colour(k) if coloured else _PALE
     fill: dict[str, Any] = {"colors": [ink], "alpha": 0.45, "zorder": 2 if coloured else 1.5}
@@ -104,6 +108,8 @@ def _draw_window(ax: Axes, plan: Plan, ego: RobotPlan, window: Window, coloured:
     if coloured:
         ax.contour(window.t, window.s, window.gap, [0.0], colors=[ink], linewidths=1.0, linestyles="solid", zorder=3)
     label = f"too close to {shown(name)}: {passes(window, ego.profile)}"
+    if choice is not None and choice.other == name:
+        label += f",\nwhich costs it most; {choice.text}"
     return Patch(facecolor=(ink, 0.45), edgecolor=ink, hatch=hatch(k), label=label)
 
 
