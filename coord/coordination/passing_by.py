@@ -45,6 +45,9 @@ def with_room_to_pass(
     for i, k in separated_pairs(problem, found):
         shares = ((1.0, 0.0), (0.0, 1.0), (0.5, 0.5))
         options = [_apart(known, found, (i, k), share, shape, check_time) for share in shares]
+        if not any(options):
+            ways = ((*pair, side) for pair in ((i, k), (k, i)) for side in (-1.0, 1.0))
+            options = [_abreast(known, found, *way, shape, check_time) for way in ways]
         times = [math.inf if one is None else one.routes[i].time + one.routes[k].time for one in options]
         found = options[int(np.argmin(times))] or found
     return found
@@ -102,6 +105,32 @@ def _beside(known: Rests, found: Rerouting, driving: int, other: int, body: Circ
     allowed = frozenset(block for block in found.blocks if block.driving == driving)
     way = way_round(known, driving, found.routes[driving], allowed, shape, also=(body,))
     return None if way is None else _with(found, driving, other, way)
+
+
+def _abreast(
+    known: Rests, found: Rerouting, driving: int, other: int, side: float, shape: str, check_time: Callable[[], None]
+) -> Rerouting | None:
+    """The same with one robot on a path aside, along and back, at the distance that the two need; None where none is.
+
+    Where they start so near to each other that nothing between them leaves both their places free, it goes out of the
+    other's way first (+1 to the left), lets it by, and then goes where it was.
+    """
+    robot, rival = known.problem.robots[driving], known.problem.robots[other]
+    length = math.dist(robot.start, robot.goal)
+    if robot.path or robot.via or length == 0:
+        return None
+    check_time()
+    needed = robot.footprint.radius + rival.footprint.radius + known.problem.workspace.clearance + _ROOM
+    (x, y), (u, v) = robot.start, robot.goal
+    aside = -side * needed * (v - y) / length, side * needed * (u - x) / length
+    via = tuple((a + aside[0], b + aside[1]) for a, b in (robot.start, robot.goal))
+    robots = [*known.problem.robots]
+    robots[driving] = dataclasses.replace(robot, via=via)
+    abreast = dataclasses.replace(known, problem=dataclasses.replace(known.problem, robots=tuple(robots)))
+    allowed = frozenset(block for block in found.blocks if block.driving == driving)
+    way = way_round(abreast, driving, found.routes[driving], allowed, shape)
+    changed = None if way is None else _with(found, driving, other, way)
+    return None if changed is None or is_separated(known.problem, changed, driving, other) else changed
 
 
 def separated_pairs(problem: Problem, found: Rerouting) -> list[tuple[int, int]]:

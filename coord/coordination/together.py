@@ -40,6 +40,9 @@ _SAMPLES = 400
 #: A profile against some meetings; None where there is none.
 Solve: TypeAlias = Callable[[Ego, list[Meeting]], Timing | None]
 
+#: What came of a robot, against the profiles of those near it and these deadlines: rounds and orders often ask again.
+_Memory: TypeAlias = dict[tuple[int, tuple[VelocityProfile, ...], tuple[tuple[int, float], ...]], Timing | None]
+
 
 def plan_together(
     scene: Scene, group: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
@@ -54,19 +57,26 @@ def plan_together(
     timings : of the robots planned before.
     check_time : called before each robot; may raise.
     """
+    memory: _Memory = {}
     orders = [[i, *(k for k in group if k != i)] for i in group[:_MOST_FIRST]]
     if len(group) <= _SMALL and all(scene.egos[i].robot.priority is None for i in group):
-        found = [_in_order(scene, order, timings, solve, check_time) for order in (list(group), list(group[::-1]))]
+        both = list(group), list(group[::-1])
+        found = [_in_order(scene, order, timings, solve, check_time, memory) for order in both]
         sums = [math.inf if one is None else math.fsum(t.profile.arrival for t in one.values()) for one in found]
         if min(sums) < math.inf:
             return found[sums.index(min(sums))]
         orders = orders[1:]
-    attempts = (_in_order(scene, order, timings, solve, check_time) for order in orders)
+    attempts = (_in_order(scene, order, timings, solve, check_time, memory) for order in orders)
     return next((one for one in attempts if one is not None), None)
 
 
 def _in_order(
-    scene: Scene, order: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
+    scene: Scene,
+    order: Sequence[int],
+    timings: Mapping[int, Timing],
+    solve: Solve,
+    check_time: Callable[[], None],
+    memory: _Memory,
 ) -> dict[int, Timing] | None:
     """The same with the robots in this order."""
     deadlines: dict[tuple[int, int], float] = {}
@@ -76,7 +86,7 @@ def _in_order(
         planned: dict[int, Timing] = {}
         for i in order:
             check_time()
-            found = _timed(scene, i, order, {**timings, **planned}, deadlines, solve)
+            found = _timed(scene, i, order, {**timings, **planned}, deadlines, solve, memory)
             if found is None:
                 break
             planned[i] = found
@@ -94,16 +104,28 @@ def _timed(
     timings: Mapping[int, Timing],
     deadlines: Mapping[tuple[int, int], float],
     solve: Solve,
+    memory: _Memory,
 ) -> Timing | None:
     """One robot against those that have a profile, and away from where the others of its group rest or will pass."""
-    meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
-    away = [
-        meeting
-        for k in group
-        if (i, k) in deadlines and k not in timings
-        for meeting in _kept_away(scene, i, k, deadlines[i, k])
-    ]
-    found = solve(scene.egos[i], meetings + away)
+    near = [k for k in scene.neighbours[i] if k in timings]
+    waits = [(k, deadlines[i, k]) for k in group if (i, k) in deadlines and k not in timings]
+    key = i, tuple(timings[k].profile for k in near), tuple(sorted(waits))
+    if key not in memory:
+        memory[key] = _against(scene, i, near, timings, waits, solve)
+    return memory[key]
+
+
+def _against(
+    scene: Scene,
+    i: int,
+    near: Sequence[int],
+    timings: Mapping[int, Timing],
+    waits: Sequence[tuple[int, float]],
+    solve: Solve,
+) -> Timing | None:
+    """The same against some robots with a profile, and with the deadlines of some without."""
+    away = [meeting for k, deadline in waits for meeting in _kept_away(scene, i, k, deadline)]
+    found = solve(scene.egos[i], scene.meetings(i, near, timings) + away)
     if found is None or not away:
         return found
     # a deadline is a choice, not a fact: what it costs proves nothing

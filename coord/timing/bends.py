@@ -24,7 +24,7 @@ from coord.timing.quickest import ramps
 from coord.tolerances import SAME_PLACE
 
 #: Cells into which the acceleration at an end of a bend is cut.
-_CELLS = 32
+_CELLS = 48
 
 #: [m] Distance of the places between two nodes at which the way so far and the rest are told apart, and their number.
 _STEP, _MOST_PLACES = 0.1, 100
@@ -152,24 +152,15 @@ def _nodes(ends: Array, caps: Array, limits: Limits, relaxed: VelocityProfile) -
             at = float(time_at(relaxed, s)[0])
             reachable = float(relaxed.state([at])[0, 1]) * (1 + 1e-9) + 1e-6
             speed = min(float(min(caps[k - 1], caps[k])), reachable)
-            nodes.append(_node(s, speed, float(caps[k - 1]), float(caps[k]), limits))
+            nodes.append(_node(s, speed, limits))
     nodes.append(_Node(length, 0.0, rest, rest))
     return nodes
 
 
-def _node(s: float, speed: float, cap_before: float, cap_behind: float, limits: Limits) -> _Node:
-    """Cells of all accelerations with which a robot can pass that does not stop at once, nor has just started.
-
-    Whoever enters a bend accelerating could as well do so at even speed: nothing is lost behind, and won before.
-    """
+def _node(s: float, speed: float, limits: Limits) -> _Node:
+    """Cells of all accelerations with which a robot can pass that neither stops at once nor has just started."""
     most = math.sqrt(2 * limits.jerk * speed)
-    low = -min(limits.deceleration, most)
-    high = min(limits.acceleration, most)
-    if speed >= cap_behind:
-        high = 0.0
-    if speed >= cap_before:
-        low = 0.0
-    edges = np.linspace(low, high, _CELLS + 1)
+    edges = np.linspace(-min(limits.deceleration, most), min(limits.acceleration, most), _CELLS + 1)
     return _Node(s, speed, edges[:-1], edges[1:])
 
 

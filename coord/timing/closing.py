@@ -60,19 +60,14 @@ class Closing:
 class _Chase:
     """The best profile and the bound, as they are improved in turn."""
 
-    def __init__(
-        self, ego: Ego, meetings: Sequence[Meeting], near: Sequence[int], best: VelocityProfile, bound: float, most: int
-    ) -> None:
-        self.ego, self.meetings = ego, meetings
-        self.best, self.bound = best, bound
-        self.most, self.programs = most, 0
+    def __init__(self, ego: Ego, meetings: Sequence[Meeting], best: VelocityProfile, bound: float) -> None:
+        self.ego, self.meetings, self.best, self.bound = ego, meetings, best, bound
+        self.most, self.fine, self.programs = 0, False, 0
         self.near: list[int] = []
         self.parts: list[Part] = []
         self.owners: list[int] = []
-        for index in near:
-            self._add(index)
 
-    def _add(self, index: int) -> None:
+    def add(self, index: int) -> None:
         found = inner_parts(self.ego, self.meetings[index])
         self.near.append(index)
         self.parts += found
@@ -87,7 +82,7 @@ class _Chase:
 
     def asked(self, arrival: float, besides: Mapping[int, bool] | None = None) -> Verdict:
         """The verdict on an arrival; a no about all motions raises the bound."""
-        verdict = could_arrive(self.ego, self.parts, arrival, self.most - self.programs, besides)
+        verdict = could_arrive(self.ego, self.parts, arrival, self.most - self.programs, besides, fine=self.fine)
         self.programs += max(verdict.programs, 1)
         if verdict.cannot and besides is None:
             self.bound = max(self.bound, arrival)
@@ -111,7 +106,7 @@ class _Chase:
         elif violated[0] in chosen:  # a bound of the tube was missed by rounding
             return False
         else:
-            self._add(violated[0])
+            self.add(violated[0])
         return True
 
 
@@ -125,10 +120,13 @@ def close_gap(
     ----------
     near : meetings, by index, that are likely to matter; leaving one out never makes a bound too late.
     most : so many relaxations may be solved.
-    enough : gaps below this share of the arrival are left.
+    enough : gaps below this share of the arrival are left; CLOSED or less asks for a finer relaxation, too.
     decided : whether it is known already that no other choice of before and after is better.
     """
-    chase = _Chase(ego, meetings, near, best, bound, most)
+    chase = _Chase(ego, meetings, best, bound)
+    chase.most, chase.fine = most, enough <= CLOSED
+    for index in near:
+        chase.add(index)
     _from_below(chase, enough)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
         others = chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best))

@@ -62,14 +62,16 @@ class Verdict:
 
 
 def could_arrive(
-    ego: Ego, parts: Sequence[Part], arrival: float, most: int, besides: Mapping[int, bool] | None = None
-) -> Verdict:
+    ego: Ego, parts: Sequence[Part], arrival: float, most: int, besides: Mapping[int, bool] | None = None, *,
+    fine: bool = False,
+) -> Verdict:  # fmt: skip
     """Whether any motion past the parts can be at the goal, at rest, by an arrival [s].
 
     Parameters
     ----------
     most : so many relaxations are solved at most; if no answer is found with them, the verdict is open.
     besides : a side for each part: asked is only for motions that pass some part on its other side.
+    fine : where nothing seems left to settle, look again with shorter cells about the bends.
     """
     reach = reach_by(ego, parts, arrival)
     stack: list[tuple[dict[int, bool], tuple[Cut, ...]]] = [({}, ())]
@@ -78,8 +80,9 @@ def could_arrive(
         stack = [(dict(same[:k]) | {same[k][0]: not same[k][1]}, ()) for k in range(len(same))]
     programs = 0
     further: list[float] = []
-    is_fine = False
-    course, sides = None, {}
+    is_fine = not fine or ego.bends is None
+    course: Course | None = None
+    sides: dict[int, bool] = {}
     while stack:
         if programs >= most:
             return Verdict(False, course, sides, programs)
@@ -103,7 +106,7 @@ def could_arrive(
             further.append(missed)
             choices = (({}, ()),)
         choices = choices or _bend_taken_too_fast(ego, motion)
-        if choices is None and ego.bends is not None and not is_fine:
+        if choices is None and not is_fine:
             further += _about_bends(ego, motion)
             is_fine, choices = True, (({}, ()),)
         if choices is None:
@@ -179,7 +182,7 @@ def _bound_missed(motion: _Motion, parts: Sequence[Part], sides: Mapping[int, bo
 
 
 def _bend_taken_too_fast(ego: Ego, motion: _Motion) -> _Choices | None:
-    """Before or behind the place that a motion passes with most too much speed, at that time; None where it does not."""
+    """Before or behind the place that a motion passes with most too much speed, at that time; None if it is not so."""
     course = motion.course
     places = np.unique(np.concatenate([ego.relaxed.states[:, 0], motion.states[:, 0]]))
     places = places[(places > 0) & (places < min(ego.length, float(course.s[-1])))]
@@ -234,7 +237,8 @@ def _knots(departure: float, arrival: float, further: Sequence[float]) -> Array:
         parts[int(np.argmax(parts))] -= 1
     while parts.sum() < size:
         parts[int(np.argmax(np.diff(given) / parts))] += 1
-    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1], knots[1:], parts.tolist(), strict=True)]
+    spans = zip(knots[:-1], knots[1:], parts.tolist(), strict=True)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in spans]
     return np.append(np.concatenate(pieces), arrival)
 
 
@@ -243,7 +247,7 @@ def _fastest(ego: Ego, low: Array, high: Array) -> Array:
     relaxed = ego.relaxed
     top = np.maximum(relaxed.state(low)[:, 1], relaxed.state(high)[:, 1])
     inside = (relaxed.times >= low[:, None]) & (relaxed.times <= high[:, None])
-    return np.maximum(top, np.where(inside, relaxed.states[:, 1], 0.0).max(axis=1))
+    return np.asarray(np.maximum(top, np.where(inside, relaxed.states[:, 1], 0.0).max(axis=1)))
 
 
 def _speed_over_place(ego: Ego, low: Array, high: Array, at_low: Array, at_high: Array) -> tuple[Array, Array]:

@@ -30,7 +30,7 @@ from coord.tolerances import OPTIMAL
 _A_LITTLE = 1e-3
 
 #: Relaxations solved for one robot to close the gap to its bound; more where proof is asked for.
-_PROGRAMS, _PROGRAMS_CERTIFY = 60, 3000
+_PROGRAMS, _PROGRAMS_CERTIFY = 60, 600
 
 #: [1] Where no proof is asked for, a gap below this share of the arrival is left as it is.
 _CLOSE_ENOUGH = 5e-3
@@ -49,7 +49,7 @@ class Timing:
     Parameters
     ----------
     after, before : indices of the other robots that it lets pass, and that it precedes, where they meet.
-    how : "alone", "start delay", "splice", "program", "gentle" or "waited".
+    how : "alone", "start delay", "splice", "program", "gentle", "stop" or "waited".
     lower_bound : arrival [s] that no motion can beat, given the motions of those before it.
     nodes : subproblems looked at.
     open : whether some choice of before or after was left undecided that might save a thousandth of the arrival.

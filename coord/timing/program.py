@@ -24,7 +24,10 @@ from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
 #: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow.
-_MESHES = (1.0, 0.4)
+_MESHES = (1.0, 0.4, 0.16, 0.07)
+
+#: [1] A finer grid is worth its while as long as this share of the arrival may be gained.
+_FINER = 5e-4
 
 #: [s] The search for the arrival ends when it rises by less than this.
 _ARRIVAL_STEP = 2e-3
@@ -58,7 +61,7 @@ def through_tube(
 
     ``least`` must not be later than the best arrival there is. The profile keeps the limits (checked
     exactly); whether it is clear of the windows the caller checks. A tight tube may be too narrow for the
-    bounds on a coarse grid, so a finer one is tried where the coarse one finds nothing.
+    bounds on a coarse grid, or cost time there, so finer ones are tried after the coarse one.
 
     Parameters
     ----------
@@ -66,12 +69,16 @@ def through_tube(
     """
     if course is None and not ego.caps.is_constant:
         return None
+    best = None
     for mesh in _MESHES:
         attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
         profile = _through(attempt, least, most, course)
-        if profile is not None:
-            return profile
-    return None
+        if profile is not None and (best is None or profile.arrival < best.arrival):
+            best = profile
+            most, course = best.arrival * (1 - _FINER), None if course is None else course_of(best, attempt.departure)
+        if best is not None and best.arrival <= least * (1 + _FINER):
+            break
+    return best
 
 
 def smooth_through(
@@ -129,7 +136,8 @@ def _first(attempt: _Attempt, most: float, course: Course) -> tuple[float, Cours
 
     The course is only rough, and a bend entered a moment too late can leave a narrow tube without any motion. So the
     program is solved with all bounds eased, then less and less so, each time with the bends where the last solution
-    has them. That is tried with the course's own arrival, and with a little more time.
+    has them. That is tried with the course's own arrival and with a little more time; at last the course is
+    stretched over all the time there is.
     """
     end = float(course.times[-1])
     for more in _LATER:
@@ -138,8 +146,9 @@ def _first(attempt: _Attempt, most: float, course: Course) -> tuple[float, Cours
         if eased is not None:
             return arrival, eased
         if arrival == most:
-            break
-    return None
+            return None
+    reached, better = _reach(attempt, most, course.until(attempt.departure, most))
+    return (most, better) if reached >= 0 and better is not None else None
 
 
 def _eased(attempt: _Attempt, arrival: float, course: Course) -> Course | None:

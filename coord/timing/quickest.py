@@ -50,7 +50,8 @@ class Ramps:
         speed = np.maximum(self.speeds[row, k], self.speeds[row, following])
         speed = np.where(k == following, self.top, speed)
         more = np.divide(np.maximum(ways - self.ways[row, k], 0.0), speed, out=np.zeros_like(ways), where=speed > 0)
-        return np.asarray(np.minimum(self.times[row, k] + more, np.where(k == following, np.inf, self.times[row, following])))
+        latest = np.where(k == following, np.inf, self.times[row, following])
+        return np.asarray(np.minimum(self.times[row, k] + more, latest))
 
 
 def ramps(speed: float, accelerations: Array, top: float, most: float, jerk: float) -> Ramps:

@@ -112,7 +112,8 @@ def settled(reach: Reach, chosen: Mapping[int, bool], cuts: Sequence[Cut]) -> Se
     parts = reach.parts
     if not parts:
         return sides, _marks(parts, sides, cuts)
-    low_clock, high_clock = (np.concatenate(some) for some in zip(*((p.low_clock, p.high_clock) for p in parts), strict=True))
+    low_clock = np.concatenate([one.low_clock for one in parts])
+    high_clock = np.concatenate([one.high_clock for one in parts])
     while True:
         bounds = _marks(parts, sides, cuts)
         low, high = _narrowed(bounds, reach.times, reach.low, reach.high)
@@ -174,7 +175,7 @@ def _earliest(ego: Ego, times: Array) -> Array:
         return np.asarray(high)
     at = clock(relaxed, ego.bends.places)
     k = np.maximum(np.searchsorted(at + ego.bends.late, t, side="right") - 1, 0)
-    return np.minimum(high, np.minimum(t - ego.bends.late[k], np.append(at, np.inf)[k + 1]))
+    return np.asarray(np.minimum(high, np.minimum(t - ego.bends.late[k], np.append(at, np.inf)[k + 1])))
 
 
 def _latest(ego: Ego, arrival: float, times: Array) -> Array:
@@ -187,7 +188,7 @@ def _latest(ego: Ego, arrival: float, times: Array) -> Array:
     needed = relaxed.arrival - at + ego.bends.long  # falls along the way
     k = np.minimum(np.searchsorted(-needed, -left, side="left"), len(at) - 1)  # the first from which the time suffices
     low = np.maximum(low, np.append(0.0, at)[k])
-    return np.maximum(low, np.minimum(relaxed.arrival - left + ego.bends.long[k], at[k]))
+    return np.asarray(np.maximum(low, np.minimum(relaxed.arrival - left + ego.bends.long[k], at[k])))
 
 
 def _way(ramp: Ramp, times: Array) -> Array:

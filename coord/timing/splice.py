@@ -8,7 +8,6 @@ larger delay. Each step is one arc of ruckig with exactly the duration in betwee
 from __future__ import annotations
 
 import dataclasses
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,17 +18,12 @@ from coord.model.profile import VelocityProfile
 from coord.solvers.jerk import SHORTEST_PHASE, motion
 from coord.timing.delay import Contact
 from coord.timing.ego import Ego
-from coord.timing.grid import Course
 
 #: Shares of the time between two contacts at which an arc may begin, counted back from its end.
 _BEGINNINGS = (1.0, 0.6, 0.35)
 
 #: [s] How long after the contact the arc may end: the profile must be joined with its speed and acceleration.
 _ENDINGS = (0.0, 0.25, 0.6, 1.2, 2.5)
-
-
-#: Samples of a course.
-_SAMPLES = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,23 +51,6 @@ def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[Vel
             if profile is not None:
                 found.append(profile)
     return found
-
-
-def delayed_course(ego: Ego, afters: list[Contact], befores: list[Contact]) -> Course | None:
-    """Roughly the quickest motion with stepwise delays for these contacts, whether or not a robot can drive so.
-
-    None where a place must be passed with less delay than one behind it needs.
-    """
-    levels = _levels(afters, befores)
-    if levels is None:
-        return None
-    s, delays = [0.0], [0.0]
-    for (earlier, _, _), (delay, needed_from, kept_to) in itertools.pairwise(levels):
-        s += [max(kept_to, s[-1]), max(needed_from, kept_to, s[-1])]
-        delays += [earlier, delay]
-    at = np.unique(np.concatenate([np.linspace(0.0, ego.length, _SAMPLES), s]))
-    times = time_at(ego.alone, at) + np.interp(at, s, delays)
-    return Course(times, at)
 
 
 def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, float, float]] | None:

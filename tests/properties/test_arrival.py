@@ -102,25 +102,47 @@ FAILURES = {
 
 @pytest.mark.parametrize("failure", FAILURES)
 def test_everybody_arrives_whatever_step_of_the_timing_stage_fails(monkeypatch, failure):
-    """Four crowds with rings and priorities: certified; and the sabotage made a difference to at least one of them."""
+    """Four crowds with rings and priorities: certified; and all but a missing start delay, which a program replaces, make a difference."""
     before = [plan(crowd(seed, 12, cells=5)) for seed in SEEDS]
     monkeypatch.setattr(*FAILURES[failure])
     after = [plan(crowd(seed, 12, cells=5)) for seed in SEEDS]
     assert all(result.certified for result in after)
-    assert [result.document for result in before] != [result.document for result in after]
+    same = [result.document for result in before] == [result.document for result in after]
+    assert failure == "start delay" or not same
     waited = [one.how for result in after for one in result.plan.robots].count("waited")
-    if failure in ("start delay", "everything"):
-        assert waited > 0
     if failure == "everything":
         assert waited == 4 * 12
 
 
 def test_everybody_arrives_when_all_steps_fail_together(monkeypatch):
     """Splice, program, branch and bound and start delay: only driving alone and waiting are left."""
-    for target, value in FAILURES.values():
-        if "passing." in target:
+    for target, value in (*FAILURES.values(), ("coord.timing.closing.through_tube", lambda *_: None)):
+        if "coord.timing." in target:
             monkeypatch.setattr(target, value)
     for seed in SEEDS:
         result = plan(crowd(seed, 12, cells=5))
         assert result.certified
         assert {one.how for one in result.plan.robots} <= {"alone", "waited"}
+
+
+#: Steps that are switched off one by one; a program is also sought where the gap to the bound is closed.
+SWITCHES = {
+    "splice": ("coord.timing.passing.spliced",),
+    "program": ("coord.timing.passing.through_tube", "coord.timing.closing.through_tube"),
+    "branch and bound": ("coord.timing.passing._branch_and_bound",),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("step", SWITCHES)
+def test_arrival_does_not_hang_on_any_single_step(monkeypatch, step):
+    """200 crowds without a ring of handed-over places: certified with the step switched off, some of them otherwise than with it."""
+    problems = [crowd(seed, 7, cells=4, shapes=SHAPES[list(SHAPES)[seed % 3]]) for seed in range(100, 300)]
+    before = [plan(problem).document for problem in problems[:40]]
+    instead = (lambda _: (0, True)) if step == "branch and bound" else (lambda *_: [] if step == "splice" else None)
+    for target in SWITCHES[step]:
+        monkeypatch.setattr(target, instead)
+    after = [plan(problem) for problem in problems]
+    assert all(result.certified for result in after)
+    assert not any("room to pass" in told.text for result in after for told in result.plan.rerouted)
+    assert before != [result.document for result in after[:40]]
