@@ -161,10 +161,12 @@ def is_separated(problem: Problem, found: Rerouting, i: int, k: int) -> bool:
 def is_proved_separated(problem: Problem, found: Rerouting, i: int, k: int) -> bool:
     """The same seen on what is truly forbidden: then there are no motions at all on these paths."""
     first, second = found.routes[i].path.length, found.routes[k].path.length
+    stay = problem.workspace.after_arrival == "stay"  # whoever leaves is at its goal for no time at all
     for part in (part for region in _regions(problem, found, i, k) for part in inner_regions(region, first)):
         low, high = part.s_range
-        reaches = low <= 0 or part.sigma[-1] >= second, high >= first or part.sigma[0] <= 0
-        if all(reaches):
+        before = low <= 0 or (stay and part.sigma[-1] >= second)
+        after = (stay and high >= first) or part.sigma[0] <= 0
+        if before and after:
             return True
     return False
 

@@ -29,14 +29,9 @@ from coord.tolerances import OPTIMAL
 #: [s] With so much less delay, the window that a delay is for is violated.
 _A_LITTLE = 1e-3
 
-#: Relaxations solved for one robot to close the gap to its bound; more where proof is asked for.
-_PROGRAMS, _PROGRAMS_CERTIFY = 60, 600
-
-#: [1] Where no proof is asked for, a gap below this share of the arrival is left as it is.
-_CLOSE_ENOUGH = 5e-3
-
-#: How a search goes by that has found nothing yet.
-_NONE = "none"
+#: To close the gap to a robot's bound: so many relaxations are solved at most, and a gap below such a share of the
+#: arrival is left as it is. The second effort is made where proof is asked for.
+_EFFORTS = ((60, 5e-3), (600, CLOSED))
 
 #: Subproblems looked at for one robot before the best profile found is taken as it is.
 MOST_NODES = 60
@@ -127,17 +122,13 @@ def time_robot(
     search = _Search(ego, meetings, delayed or _far_away(ego, meetings), _NONE if delayed is None else "start delay")
     nodes, is_open = _branch_and_bound(search)
     bound, near = _certified(search)
-    far = CLOSED if certify else _CLOSE_ENOUGH
-    if bound < search.best.arrival * (1 - (CLOSED if is_open else far)):
-        most = _PROGRAMS_CERTIFY if certify else _PROGRAMS
-        closing = close_gap(ego, meetings, near, search.best, bound, most=most, enough=far, decided=not is_open)
-        bound, is_open = closing.bound, not closing.is_decided
-        if closing.is_new:
-            search.take(closing.profile, "program")
-    else:
-        is_open = False
-    if search.how == _NONE:
-        return None
+    is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
+    for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
+        if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
+            closing = close_gap(ego, meetings, near, search.best, bound, most=most, enough=enough, decided=not is_open)
+            bound, is_open = closing.bound, not closing.is_decided
+            if closing.is_new:
+                search.take(closing.profile, "program")
     if profile == "gentle":
         calm = gentle(ego, meetings, search.best, sorted(search.known))
         if calm is not None:

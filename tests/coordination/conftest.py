@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from coord.model.footprint import Footprint
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
+
+ANALYSIS = Path(__file__).resolve().parents[2] / "analysis"
 
 
 def _crowd(seed, count=15, cells=6, shape=Footprint(0.3), spacing=1.6):  # noqa: B008 - a frozen value
@@ -24,3 +29,12 @@ def _crowd(seed, count=15, cells=6, shape=Footprint(0.3), spacing=1.6):  # noqa:
 def crowd():
     """A function (seed, count, cells, shape, spacing) that makes a problem."""
     return _crowd
+
+
+@pytest.fixture
+def arrival(monkeypatch):
+    """The benchmark of arrival, with what confirms a reason."""
+    if not ANALYSIS.is_dir():
+        pytest.skip("the benchmark lives in analysis/, which is not here")
+    monkeypatch.syspath_prepend(str(ANALYSIS))
+    return importlib.import_module("arrival")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 
 import numpy as np
@@ -81,6 +82,60 @@ def test_two_robots_swap_places_on_a_free_floor(half, angle, mine, theirs, relea
     early, late = sorted(one.profile.departure for one in result.plan.robots)
     assert late < max(one.arrival for one in result.plan.robots)
     assert any("room to pass" in one.text for one in result.plan.rerouted)
+
+
+@st.composite
+def ways(draw):
+    """Two given paths of up to three legs; often from each other's goals, and one beside the other."""
+
+    def place():
+        return tuple(draw(st.floats(-3.0, 3.0).map(lambda x: round(x, 3))) for _ in range(2))
+
+    def aside(at):
+        return tuple(x + draw(st.sampled_from([-0.5, -0.2, 0.0, 0.3])) for x in at)
+
+    first = [place() for _ in range(draw(st.integers(2, 4)))]
+    kind = draw(st.sampled_from(["back", "beside", "swap", "any"]))
+    inner = [place() for _ in range(draw(st.integers(0, 2)))]
+    second = {
+        "back": first[::-1],
+        "beside": [first[-1], *map(aside, first[-2:0:-1]), first[0]],
+        "swap": [first[-1], *inner, first[0]],
+        "any": [place(), *inner, place()],
+    }[kind]
+    return first, second, draw(st.sampled_from(["stay", "leave"]))
+
+
+@pytest.mark.parametrize("examples", [pytest.param(25, id="few"), pytest.param(250, id="many", marks=pytest.mark.long)])
+def test_pairs_are_separated_exactly_where_a_walk_over_a_grid_says_so(arrival, examples):
+    """Given paths, staying or leaving: whom a walk brings home is neither separated nor proved so; whom none does is separated, if in one group."""
+    seen = set()
+
+    @settings(deadline=None, derandomize=True, database=None, max_examples=examples)
+    @given(ways())
+    def check(drawn):
+        first, second, after = drawn
+        near = math.dist(first[0], second[0]), math.dist(first[-1], second[-1])
+        legs = [math.dist(a, b) for way in (first, second) for a, b in itertools.pairwise(way)]
+        if near[0] < REACH or (near[1] < REACH and after == "stay") or min(legs) < 0.1:
+            return
+        robots = (
+            robot("a", first[0], first[-1], path=tuple(first)),
+            robot("b", second[0], second[-1], path=tuple(second)),
+        )
+        problem = scene(*robots, after=after)
+        found = unopened(problem)
+        mine, theirs = (route.path for route in found.routes)
+        separated, proved = is_separated(problem, found, 0, 1), is_proved_separated(problem, found, 0, 1)
+        if arrival.can_pass(problem, 0, mine, 1, theirs):
+            assert (separated, proved) == (False, False)
+            seen.add((after, "can"))
+        elif arrival.cannot_pass(problem, 0, mine, 1, theirs) and found.together:
+            assert separated
+            seen.add((after, "cannot"))
+
+    check()
+    assert seen == {(after, what) for after in ("stay", "leave") for what in ("can", "cannot")}
 
 
 @pytest.mark.parametrize("half", [0.34, 0.4, 0.5, 0.6])

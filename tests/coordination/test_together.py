@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import math
 import re
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -24,7 +22,6 @@ from coord.plan import plan
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 DISC = Footprint(0.3)
-ANALYSIS = Path(__file__).resolve().parents[2] / "analysis"
 
 
 def robot(name, start, goal, shape=DISC, **more):
@@ -234,15 +231,6 @@ def test_a_time_limit_ends_a_group(monkeypatch):
     result = plan(scene(*ring(3, 3.0)), Options(time_limit=0.5))
     assert result.plan is None
     assert result.diagnoses[0].code == "time-limit"
-
-
-@pytest.fixture
-def arrival(monkeypatch):
-    """The benchmark of arrival."""
-    if not ANALYSIS.is_dir():
-        pytest.skip("the benchmark lives in analysis/, which is not here")
-    monkeypatch.syspath_prepend(str(ANALYSIS))
-    return importlib.import_module("arrival")
 
 
 @pytest.mark.long

@@ -78,17 +78,17 @@ def test_nobody_arrives_before_its_bound_alone(cases):
         assert verdict.programs <= 1
 
 
-def test_almost_every_delayed_robot_is_proved_to_be_as_early_as_can_be(cases):
-    """With certify, nine in ten arrive at most 0.11 % after a time by which none can; the bound never falls, nor does the arrival rise."""
+def test_certify_leaves_no_robot_worse_off_and_closes_most_gaps(cases):
+    """Neither does a bound fall nor an arrival rise; three delayed robots in four are then 0.1 % above their bounds or less."""
     gaps = []
     for ego, timing, meetings in cases:
         if timing.how != "alone":
             certified = time_robot(ego, meetings, certify=True)
-            assert certified.lower_bound >= timing.lower_bound * (1 - 1e-9)
-            assert certified.profile.arrival <= timing.profile.arrival * (1 + 1e-3)
+            assert certified.lower_bound >= timing.lower_bound
+            assert certified.profile.arrival <= timing.profile.arrival
             gaps.append(certified.profile.arrival / certified.lower_bound - 1)
     assert len(gaps) >= 20
-    assert np.quantile(gaps, 0.9) < 1.1e-3
+    assert np.quantile(gaps, 0.75) < 1.01e-3
 
 
 def test_brute_force_on_a_grid_is_never_denied(lanes, could_arrive_in, timed):
