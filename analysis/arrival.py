@@ -49,7 +49,7 @@ OUTCOMES = (CERTIFIED, CONFIRMED, NO_REASON, LATE, UNCONFIRMED)
 GRIDS = (500, 2000, 8000)
 
 #: Places along each path where it is shown that two can pass.
-SPARE = 3000
+SPARE = 1000
 
 #: [m] Steps in which headings are summed up to points, and what those may be off by that: curvatures reach 100 / m.
 STEP, ROUNDING = 2e-4, 1e-5

@@ -145,12 +145,12 @@ def measured(count: int, number: int, arguments: argparse.Namespace) -> Row:
 def _plan_all(row: Row, problem: Problem, shapes: Sequence[str]) -> None:
     failed = []
     for shape in shapes:
-        began = time.perf_counter()
+        began = time.process_time()
         ends = [began]
 
         def note(stage: str, *_: int, ends: list[float] = ends) -> None:
             if stage == "paths":
-                ends.append(time.perf_counter())
+                ends.append(time.process_time())
 
         try:
             result = plan(problem, Options(shape=shape), note)
@@ -252,9 +252,9 @@ def on_floors(places: Iterable[Path]) -> None:
 
 
 def _timed(work: Callable[[], Value]) -> tuple[Value, float]:
-    began = time.perf_counter()
+    began = time.process_time()
     value = work()
-    return value, time.perf_counter() - began
+    return value, time.process_time() - began
 
 
 def _at_most(what: str, target: float, values: Sequence[float], digits: int = 3) -> tuple[str, str, str, bool]:

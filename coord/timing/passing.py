@@ -33,6 +33,9 @@ _A_LITTLE = 1e-3
 #: arrival is left as it is. The second effort is made where proof is asked for.
 _EFFORTS = ((60, 5e-3), (600, CLOSED))
 
+#: How a robot drives for which nothing has been found yet.
+_NONE = "none"
+
 #: Subproblems looked at for one robot before the best profile found is taken as it is.
 MOST_NODES = 60
 
@@ -129,6 +132,8 @@ def time_robot(
             bound, is_open = closing.bound, not closing.is_decided
             if closing.is_new:
                 search.take(closing.profile, "program")
+    if search.how == _NONE:
+        return None
     if profile == "gentle":
         calm = gentle(ego, meetings, search.best, sorted(search.known))
         if calm is not None:
