@@ -6,7 +6,7 @@ with the time that the skeleton's length alone would take. Then a made-up floor 
 and ways are sought on it; problem files or folders of them (FLOOR) are added. A robot without a way is a row too, and
 counts as a failure unless that is proved.
 
-What is the same on every machine goes to ``paths.csv``, wall times to ``paths_seconds.csv``.
+What is the same on every machine goes to ``paths.csv``, processor times to ``paths_seconds.csv``.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ Value = TypeVar("Value")
 
 @dataclass(slots=True)
 class Row:
-    """One robot: which one, what was found (lengths [m], times [s]), and the wall times [s] that it took."""
+    """One robot: which one, what was found (lengths [m], times [s]), and the processor times [s] that it took."""
 
     obstacles: int
     seed: int

@@ -21,7 +21,7 @@ from coord.model.robot import Robot
 _CODES: Final = frozenset({"blocking-cycle", "no-way", "no-way-on-side", "no-room", "no-room-to-turn", "path-too-near"})
 
 #: More robots than this are not tried; nor more moves of their starts and goals.
-_MOST_ROBOTS, _MOST_MOVES = 6, 32
+_MOST_ROBOTS, _MOST_MOVES = 3, 16
 
 #: [m] Told clearances are multiples of this, as are told places; rounds in which the limit is narrowed.
 _GRID, _ROUNDS = 1e-3, 5

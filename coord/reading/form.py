@@ -71,6 +71,7 @@ class PlanForm(Form):
     gap_target: Number | None = _takes("a number")
     seed: int | None = _takes("a whole number")
     keep_paths: bool | None = _takes("true or false")
+    certify: bool | None = _takes("true or false")
     plots: bool | None = _takes("true or false")
 
 
