@@ -6,8 +6,8 @@ robots that cannot pass each other on their paths, by a walk over a fine grid of
 itself says that it found no motions but proves nothing, the outcome is "no reason found".
 
 A run that needs more than 60 s of processor time is ended. What is the same on every machine goes to ``arrival.csv``,
-processor times to ``arrival_seconds.csv``. With ``--numbers`` or ``--kinds`` a part is run and its rows replace those in
-the files, so that a long run can be had in pieces; ``--table`` only prints what is in them.
+processor times to ``arrival_seconds.csv``. With ``--numbers`` or ``--kinds`` a part is run and its rows replace those
+in the files, so that a long run can be had in pieces; ``--table`` only prints what is in them.
 """
 
 from __future__ import annotations
