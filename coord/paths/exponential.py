@@ -1,9 +1,10 @@
 """Exponential detours: the classical least-squares fit y = A exp(B x) of rise and fall, made safe.
 
-Each obstacle that blocks the straight line gets a detour of its own; in between the robot drives on the line.
-Among a few ways to join the flanks the quickest is taken. The curve becomes pieces of linear curvature, so that
-the curvature never jumps, and it is raised until these pieces keep the distance. Where a detour has no single
-height over the line, or no room for its feet, the turns of the whole way are fitted instead, and a remark says so.
+Each obstacle that blocks the straight line gets a detour of its own; in between the robot drives on the line. Next
+to start and goal a detour may also meet the line at an angle. Among a few ways to fit and to join the flanks the
+quickest is taken. The curve becomes pieces of linear curvature, so that the curvature never jumps, and it is raised
+until these pieces keep the distance. Where a detour has no single height over the line, or no room for its feet, the
+turns of the whole way are fitted instead, and a remark says so.
 """
 
 from __future__ import annotations
@@ -139,13 +140,7 @@ def _detoured(line: Line, limits: Limits, closeness: float) -> tuple[Path, list[
 
 def _bend(line: Line, detour: Detour, limits: Limits) -> _Bend | set[int] | str:
     """The quickest curve past a detour that keeps the distance; or the parts that are still in its way; or why not."""
-    rooms = _ROOM * (detour.first - detour.least), _ROOM * (detour.most - detour.last)
-    feet = {(min(r * detour.height, rooms[0]), min(r * detour.height, rooms[1])): None for r in _REACHES}
-    found_flanks = [flanks(detour, reach, shares) for shares, reach in product(_SHARES, feet)]
-    bends = [_raised(line, one, _JOINS[0], 1.0) for one in found_flanks if one is not None]
-    options = _timed(line, [bend for bend in bends if bend is not None], limits)
-    joined = [_raised(line, bend.curve.flanks, p, 1.0) for bend, p in product(options[:_BEST], _JOINS[1:])]
-    options = _timed(line, options + [bend for bend in joined if bend is not None], limits)
+    options = _options(line, detour, limits)
     if not options:
         return f"the detour {_where(detour)} has too little room for its feet"
     more: set[int] = set()
@@ -159,8 +154,25 @@ def _bend(line: Line, detour: Detour, limits: Limits) -> _Bend | set[int] | str:
     return more or f"there is no room for the detour {_where(detour)} beside what stands on its other side"
 
 
-def _timed(line: Line, bends: Sequence[_Bend], limits: Limits) -> list[_Bend]:
+def _options(line: Line, detour: Detour, limits: Limits) -> list[_Bend]:
+    """Curves past a detour, the quickest first: each way to fit it, and each way to join the best of these."""
+    rooms = _ROOM * (detour.first - detour.least), _ROOM * (detour.most - detour.last)
+    feet = {(min(r * detour.height, rooms[0]), min(r * detour.height, rooms[1])): None for r in _REACHES}
+    left = (False, True) if detour.least == 0.0 else (False,)
+    right = (False, True) if detour.most == line.length else (False,)
+    bends: list[_Bend | None] = []
+    for shares, reach, *at_angle in product(_SHARES, feet, left, right):
+        found = flanks(detour, reach, shares)
+        if found is not None:
+            bends.append(_raised(line, found, _JOINS[0], 1.0, (at_angle[0], at_angle[1])))
+    best = _timed(line, bends, limits)
+    joined = [_raised(line, one.curve.flanks, p, 1.0, one.curve.at_angle) for one in best[:_BEST] for p in _JOINS[1:]]
+    return _timed(line, [*best, *joined], limits)
+
+
+def _timed(line: Line, options: Sequence[_Bend | None], limits: Limits) -> list[_Bend]:
     """The bends in the order of the time that the whole path takes with each of them, the quickest first."""
+    bends = [bend for bend in options if bend is not None]
     paths = [_path(line, [bend]) for bend in bends]
     times = [quick_estimate(speed_limit(path, limits, cap_ratio=_CAP_RATIO), limits) for path in paths]
     return [bends[k] for k in sorted(range(len(bends)), key=lambda k: times[k])]
@@ -172,19 +184,19 @@ def _certified(line: Line, bend: _Bend) -> _Bend | None:
     for more in _MORE:
         if found is None or keeps_distance(line.floor, _alone(line, found)):
             return found
-        flank = bend.curve.flanks
-        found = _raised(line, flank, bend.curve.p, bend.curve.extra * (1 + more))
+        curve = bend.curve
+        found = _raised(line, curve.flanks, curve.p, curve.extra * (1 + more), curve.at_angle)
     return None
 
 
-def _raised(line: Line, found: Flanks, p: float, extra: float) -> _Bend | None:
+def _raised(line: Line, found: Flanks, p: float, extra: float, at_angle: tuple[bool, bool]) -> _Bend | None:
     """The curve with these flanks, raised until its refit is clear; None where there is no room for it."""
     detour = found.detour
     if max(abs(fit.B) for fit in found.fits) * detour.height > _STEEPEST:
         return None
     for _ in range(_RAISES):
-        shape = curve(found, p, extra)
-        pieces = refit(shape, shape.first, shape.last) if shape is not None else None
+        shape = curve(found, p, extra, at_angle)
+        pieces = refit(shape, shape.first, shape.last, at_angle) if shape is not None else None
         if shape is None or pieces is None or pieces.begin < detour.least or pieces.end > detour.most:
             return None
         lack = line.short_of(detour, pieces.places)
@@ -197,7 +209,7 @@ def _raised(line: Line, found: Flanks, p: float, extra: float) -> _Bend | None:
 def _alone(line: Line, bend: _Bend) -> Path:
     """The pieces of one detour, where they lie on the floor."""
     x, y = line.back(np.array([[bend.refit.begin, 0.0]]))[0].tolist()
-    return Path((x, y, line.heading), frozen(_pieces(bend), 3))
+    return Path((x, y, _heading(line, bend)), frozen(_pieces(bend), 3))
 
 
 def _path(line: Line, bends: Sequence[_Bend]) -> Path:
@@ -209,7 +221,13 @@ def _path(line: Line, bends: Sequence[_Bend]) -> Path:
         pieces += _pieces(bend)
         at = bend.refit.end
     pieces.append((line.length - at, 0.0, 0.0))
-    return Path((*line.start, line.heading), frozen([piece for piece in pieces if piece[0] > _SHORTEST], 3))
+    heading = _heading(line, bends[0]) if bends else line.heading
+    return Path((*line.start, heading), frozen([piece for piece in pieces if piece[0] > _SHORTEST], 3))
+
+
+def _heading(line: Line, bend: _Bend) -> float:
+    """The heading [rad] with which a detour leaves the line."""
+    return line.heading + bend.curve.flanks.detour.side * bend.refit.heading
 
 
 def _pieces(bend: _Bend) -> list[tuple[float, float, float]]:

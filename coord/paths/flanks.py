@@ -7,31 +7,26 @@ The flanks are fits y = A exp(B x), by least squares in ln y:
 
 to the upper hull of the envelope and of one foot on either side of it. A fit lies below some of its points, and
 two flanks meet in a corner; so the fits are raised above the hull, joined with the flat top h by
-y = (rise^-p + h^-p + fall^-p)^(-1/p), and all of it is raised until it clears the envelope. An exponential never
-reaches the line either: at 2 % of h it is cut, and a quintic leads on to the line.
+y = (rise^-p + h^-p + fall^-p)^(-1/p), and all of it is raised until it clears the envelope. Then come
+the feet.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
 from coord.model.arrays import Array
 from coord.model.route import Fit
 from coord.paths.detours import Detour
+from coord.paths.feet import Foot, fitting
 from coord.tolerances import SAME_PLACE
 
 #: Points of the hull that a flank is fitted to.
 _POINTS = 60
-
-#: Shares of the height at which the exponential is cut: the first, or the next where there is no room for its tail.
-_CUTS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4)
-
-#: Lengths of the quintic, in units of 1/B, the smoothest first.
-_QUINTICS = (3.0, 2.0, 1.5)
 
 #: [1] Error of ln y where the curve is cut, and rounds at most to get there.
 _CONVERGED, _MOST_ROUNDS = 1e-12, 50
@@ -51,30 +46,6 @@ class Flanks:
     fall: Array
 
 
-class Foot(NamedTuple):
-    """Where a flank is cut: x [m], y [m], y' [1] and y'' [1/m] seen uphill, and the length [m] of the quintic below."""
-
-    x: float
-    y: float
-    slope: float
-    second: float
-    length: float
-
-    def quintic(self, u: Array) -> Array:
-        """y, y', y'' (3, n) at the distances u (n,) [m] uphill of the cut, up to 0; flat and straight at the line."""
-        length = self.length
-        t = np.maximum(u / length + 1, 0.0)
-        y, m, q = self.y, self.slope * length, self.second * length**2 / 2
-        a, b, c = 10 * y - 4 * m + q, -15 * y + 7 * m - 2 * q, 6 * y - 3 * m + q
-        return np.stack(
-            [
-                t**3 * (a + t * (b + t * c)),
-                t**2 * (3 * a + t * (4 * b + 5 * t * c)) / length,
-                t * (6 * a + t * (12 * b + 20 * t * c)) / length**2,
-            ]
-        )
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """The joined curve y(x): ``raised`` times as high as its formula says, ``extra`` times as high as it has to be."""
@@ -85,6 +56,11 @@ class Curve:
     raised: float
     left: Foot
     right: Foot
+
+    @property
+    def at_angle(self) -> tuple[bool, bool]:
+        """Whether it leaves the line, and comes back to it, at an angle."""
+        return self.left.at_angle, self.right.at_angle
 
     @property
     def first(self) -> float:
@@ -102,7 +78,7 @@ class Curve:
         values = np.stack([y, y * m, y * (m * m + v)])
         for sign, foot in ((1.0, self.left), (-1.0, self.right)):
             outside = sign * (x - foot.x) < 0
-            values[:, outside] = foot.quintic(sign * (x[outside] - foot.x)) * np.array([[1.0], [sign], [1.0]])
+            values[:, outside] = foot.below(sign * (x[outside] - foot.x)) * np.array([[1.0], [sign], [1.0]])
         return values[0], values[1], values[2]
 
 
@@ -125,14 +101,18 @@ def flanks(detour: Detour, reach: tuple[float, float], shares: tuple[float, floa
     return Flanks(detour, (up, down), (lift_up, lift_down), rise, fall)
 
 
-def curve(flanks: Flanks, p: float, extra: float) -> Curve | None:
-    """The curve that clears the envelope, raised by the factor ``extra`` beyond that; None where it needs more room."""
+def curve(flanks: Flanks, p: float, extra: float, at_angle: tuple[bool, bool]) -> Curve | None:
+    """The curve that clears the envelope, raised by the factor ``extra`` beyond that; None where it needs more room.
+
+    ``at_angle`` : whether its first and its last foot go to the ends of the detour's room, and meet the line there.
+    """
     detour = flanks.detour
     y, _, _ = _joined(flanks, p, 1.0, detour.x)
     raised = float((detour.envelope / y).max()) * extra
     feet: list[Foot] = []
     for side, room in ((0, detour.middle - detour.least), (1, detour.most - detour.middle)):
-        foot = _fitting(flanks, p, raised, side, room)
+        cut_at = partial(_foot, flanks, p, raised, side)
+        foot = fitting(cut_at, detour.middle, room, at_angle=at_angle[side])
         if foot is None:
             return None
         feet.append(foot)
@@ -199,19 +179,10 @@ def _joined(flanks: Flanks, p: float, raised: float, x: Array) -> tuple[Array, A
     return raised * np.exp(least - np.log(total) / p), mean, -p * variance
 
 
-def _fitting(flanks: Flanks, p: float, raised: float, side: int, room: float) -> Foot | None:
-    """The lowest cut and the longest quintic that end within the room [m] from the detour's middle."""
-    for cut in _CUTS:
-        foot = _foot(flanks, p, raised, side, cut * flanks.detour.height)
-        for longer in _QUINTICS:
-            if abs(foot.x - flanks.detour.middle) + longer * foot.length <= room:
-                return foot._replace(length=longer * foot.length)
-    return None
-
-
-def _foot(flanks: Flanks, p: float, raised: float, side: int, cut: float) -> Foot:
-    """Where the rise (side 0) or the fall (1) has the height ``cut`` [m], with a quintic of length 1/B."""
+def _foot(flanks: Flanks, p: float, raised: float, side: int, share: float) -> Foot:
+    """Where the rise (side 0) or the fall (1) has a share of the detour's height, with a foot of length 1/B."""
     fit, lift = flanks.fits[side], flanks.lifts[side]
+    cut = share * flanks.detour.height
     # the joined curve is below its rise, so it reaches the height of the cut later than the rise does; ln y is
     # concave, so Newton's method comes from there and never passes
     x = flanks.detour.middle + (math.log(cut / raised) - math.log(fit.A) - lift) / fit.B

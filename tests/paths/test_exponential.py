@@ -170,3 +170,17 @@ def test_where_nothing_is_in_the_way_the_path_is_straight():
     assert shaped.path.pieces.tolist() == [[13.0, 0.0, 0.0]]
     assert not shaped.fits
     assert not shaped.remarks
+
+
+def test_with_little_room_at_the_start_it_leaves_at_an_angle_and_is_hardly_slower():
+    """A start 1 m before a box two metres wide has no room for a foot along the line: at an angle it costs 12 % at most.
+
+    The path still begins and ends in start and goal to 1e-9 m, and comes back to the line along it or at an angle.
+    """
+    start, goal = (6.5, 7.0), (18.0, 7.0)
+    floor, bones, shaped = solve([rectangle("r", (8, 5, 10, 8.5))], BOUNDS, 0.4, start, goal)
+    assert shaped.fits
+    assert abs(shaped.path.poses[0, 2]) > 0.1
+    assert shaped.path.end == pytest.approx(goal, abs=1e-9)
+    ratio = fastest(shaped.path, LIMITS).arrival / fastest(fitted(bones, LIMITS, floor), LIMITS).arrival
+    assert ratio < 1.12
