@@ -35,6 +35,7 @@ from coord.paths.routes import find_routes
 from coord.timing.ego import Ego, ego
 from coord.timing.meeting import first_violated
 from coord.timing.passing import Timing
+from coord.timing.ties import equally_early
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -187,11 +188,12 @@ def _on(company: Company, i: int, route: Route, options: Options) -> _Joined:
     found = timing(
         one,
         meetings,
-        is_last=all(k in company.profiles for k in near),
         profile=options.profile,
         method=options.method,
         certify=options.certify,
     )
+    if found is not None and found.how == "start delay" and all(k in company.profiles for k in near):
+        found = next(iter(equally_early(one, meetings, found)), found)
     if not late:
         found = found or waiting(one, meetings)
     elif found is not None and first_violated(meetings, found.profile) is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from coord.coordination import diagnose
+from coord.coordination.courtesy import courteous
 from coord.coordination.scene import Scene
 from coord.coordination.together import plan_together
 from coord.errors import NoPlanError, SolverError
@@ -52,8 +53,8 @@ def plan_in_order(
         if time_is_up():
             raise NoPlanError([diagnose.time_is_up(len(timings), len(order))])
 
-    def solve(ego: Ego, meetings: list[Meeting]) -> Timing | None:
-        return timing(ego, meetings, is_last=False, profile=profile, method=method, certify=certify)
+    def solve(ego: Ego, meetings: list[Meeting], *, hurried: bool = False) -> Timing | None:
+        return timing(ego, meetings, profile=profile, method=method, certify=certify, hurried=hurried)
 
     stuck: dict[tuple[int, ...], Diagnosis] = {}
     for i in order:
@@ -71,9 +72,8 @@ def plan_in_order(
         if stuck:
             continue  # all that is left to find out is which other groups get stuck, even among few
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
-        is_last = all(k in timings for k in scene.neighbours[i])
-        own = timing(scene.egos[i], meetings, is_last=is_last, profile=profile, method=method, certify=certify)
-        timings[i] = own or waiting(scene.egos[i], meetings)
+        own = timing(scene.egos[i], meetings, profile=profile, method=method, certify=certify)
+        timings[i] = courteous(scene, i, own or waiting(scene.egos[i], meetings), meetings, timings)
         done(len(timings))
     if stuck:
         raise NoPlanError(stuck.values())
@@ -81,13 +81,19 @@ def plan_in_order(
 
 
 def timing(
-    ego: Ego, meetings: list[Meeting], *, is_last: bool, profile: str, method: str = "velocity", certify: bool = False
+    ego: Ego,
+    meetings: list[Meeting],
+    *,
+    profile: str,
+    method: str = "velocity",
+    certify: bool = False,
+    hurried: bool = False,
 ) -> Timing | None:
     """The profile that the timing stage finds; None where it finds none, or a library fails it."""
     try:
         if method == "stop":
             return stop_robot(ego, meetings)
-        return time_robot(ego, meetings, is_last=is_last, profile=profile, certify=certify)
+        return time_robot(ego, meetings, profile=profile, certify=certify, hurried=hurried)
     except SolverError:
         return None
 

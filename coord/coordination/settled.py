@@ -1,10 +1,11 @@
-"""Paths on which everybody can come home: rings opened, and room to pass for those that have to leave together."""
+"""Paths on which everybody can come home: rings opened, and room to pass or to wait for those that leave together."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from coord.coordination.bays import with_bays
 from coord.coordination.passing_by import separated_pairs, with_room_to_pass
 from coord.coordination.records import unopened
 from coord.coordination.rerouting import Rerouting, without_rings
@@ -38,7 +39,7 @@ def settle(
     """Paths for all robots, from their quickest routes; parameters as in ``without_rings``."""
     found = without_rings(problem, quickest, shape, keep_paths=keep_paths, done=done, check_time=check_time)
     if found.together and not keep_paths:
-        found = with_room_to_pass(problem, found, shape, check_time)
+        found = with_bays(problem, with_room_to_pass(problem, found, shape, check_time), shape, check_time)
     apart = separated_pairs(problem, found)
     told = tuple(unopened(problem, found, apart, keep_paths=keep_paths))
     lost = {i for pair in apart for i in pair}

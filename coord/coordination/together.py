@@ -2,15 +2,16 @@
 
 One after the other they could never come home, since each would have to go first. So whoever is planned keeps away
 from the places where those not planned yet rest, and where they still have to pass, until a deadline; and whoever
-is planned later has to be gone by the time the others come. Deadlines are raised until all fit. The guarantee of
-arrival does not cover such robots: a plan is found, or not.
+is planned later has to be gone by the time the others come. Deadlines are raised until all fit. Besides, moves of one
+robot at a time are sought that bring all home, and become motions at the same time. The guarantee of arrival does not
+cover such robots: a plan is found, or not, with so much work at most, counted in robots planned.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -20,7 +21,10 @@ from coord.conflicts.chords import chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import conflict_regions
 from coord.conflicts.rest import runs_over
+from coord.coordination.lattice import Floor, lattice_of
+from coord.coordination.moves import MOST_STATES, moves_home
 from coord.coordination.scene import Scene
+from coord.coordination.turns import Solve, improved, in_turns, sum_of, told
 from coord.model.arrays import Point, frozen
 from coord.model.path import Path, straight
 from coord.model.profile import VelocityProfile
@@ -37,8 +41,12 @@ _SMALL, _MOST_FIRST = 4, 6
 #: Places of a path among which the nearest to a point is sought.
 _SAMPLES = 400
 
-#: A profile against some meetings; None where there is none.
-Solve: TypeAlias = Callable[[Ego, list[Meeting]], Timing | None]
+#: Larger groups that have moves home do without deadlines.
+_MOST_WITH_DEADLINES = 8
+
+#: How often each robot of a group may be planned on average while deadlines are sought: of two, of more, and where
+#: the lattice has no moves home. How often all of a group while a plan is improved.
+_MOST_OF_TWO, _MOST_TRIES, _FEW_TRIES, _MOST_ANEW = 30, 4, 2, 60
 
 #: What came of a robot, against the profiles of those near it and these deadlines: rounds and orders often ask again.
 _Memory: TypeAlias = dict[tuple[int, tuple[VelocityProfile, ...], tuple[tuple[int, float], ...]], Timing | None]
@@ -47,9 +55,11 @@ _Memory: TypeAlias = dict[tuple[int, tuple[VelocityProfile, ...], tuple[tuple[in
 def plan_together(
     scene: Scene, group: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
 ) -> dict[int, Timing] | None:
-    """Profiles for all robots of a group, in the order in which they were planned; None where none were found.
+    """Profiles for all robots of a group, in the order of their arrivals; None where none were found.
 
-    Where nobody in the group has a priority, and it is small, both directions of the order are compared.
+    Deadlines are tried; moves one after the other are sought, too, which then become motions at the same time. Both
+    plans are improved, and the better one is taken. Two robots that find a plan with deadlines are left with it: what
+    is better for them was measured to be worse for the pairs after them.
 
     Parameters
     ----------
@@ -57,36 +67,60 @@ def plan_together(
     timings : of the robots planned before.
     check_time : called before each robot; may raise.
     """
-    memory: _Memory = {}
+    floor = Floor([one.robot for one in scene.egos], [one.path for one in scene.egos], scene.blocked, scene.clearance)
+    lattice = lattice_of(floor, group)
+    moves, is_whole = (None, False) if lattice is None else moves_home(lattice, MOST_STATES)[:2]
+    tries = _MOST_OF_TWO if len(group) == 2 else _FEW_TRIES if moves is None and is_whole else _MOST_TRIES
+    search = _Search(scene, timings, solve, check_time, tries * len(group))
+    plan = None if len(group) > _MOST_WITH_DEADLINES and moves is not None else _with_deadlines(search, group)
+    if plan is not None and len(group) == 2:
+        return told(scene, plan, timings)
+    plans = [] if plan is None else [plan]
+    if lattice is not None and moves is not None:
+        plans.append(in_turns(scene, group, lattice, moves, timings))
+    plans = [improved(scene, one, timings, solve, check_time, _MOST_ANEW) for one in plans]
+    return min(plans, key=sum_of, default=None)
+
+
+@dataclass(slots=True, eq=False)
+class _Search:
+    """What the attempts with deadlines share; ``left`` : how many robots may still be planned in all of them."""
+
+    scene: Scene
+    timings: Mapping[int, Timing]
+    solve: Solve
+    check_time: Callable[[], None]
+    left: int
+    memory: _Memory = field(default_factory=dict)
+
+
+def _with_deadlines(search: _Search, group: Sequence[int]) -> dict[int, Timing] | None:
+    """Profiles for all robots, planned in some order.
+
+    Where nobody in the group has a priority, and it is small, both directions of the order are compared.
+    """
     orders = [[i, *(k for k in group if k != i)] for i in group[:_MOST_FIRST]]
-    if len(group) <= _SMALL and all(scene.egos[i].robot.priority is None for i in group):
-        both = list(group), list(group[::-1])
-        found = [_in_order(scene, order, timings, solve, check_time, memory) for order in both]
-        sums = [math.inf if one is None else math.fsum(t.profile.arrival for t in one.values()) for one in found]
-        if min(sums) < math.inf:
-            return found[sums.index(min(sums))]
+    if len(group) <= _SMALL and all(search.scene.egos[i].robot.priority is None for i in group):
+        found = [_in_order(search, order) for order in (list(group), list(group[::-1]))]
+        known = [one for one in found if one is not None]
+        if known:
+            return min(known, key=sum_of)
         orders = orders[1:]
-    attempts = (_in_order(scene, order, timings, solve, check_time, memory) for order in orders)
+    attempts = (_in_order(search, order) for order in orders)
     return next((one for one in attempts if one is not None), None)
 
 
-def _in_order(
-    scene: Scene,
-    order: Sequence[int],
-    timings: Mapping[int, Timing],
-    solve: Solve,
-    check_time: Callable[[], None],
-    memory: _Memory,
-) -> dict[int, Timing] | None:
+def _in_order(search: _Search, order: Sequence[int]) -> dict[int, Timing] | None:
     """The same with the robots in this order."""
+    scene, timings = search.scene, search.timings
     deadlines: dict[tuple[int, int], float] = {}
     before = [timings[k].profile.arrival for i in order for k in scene.neighbours[i] if k in timings]
     latest = _LATEST * (max(before, default=0.0) + math.fsum(scene.egos[i].alone.arrival for i in order))
-    while max(deadlines.values(), default=0.0) <= latest:
+    while max(deadlines.values(), default=0.0) <= latest and search.left > 0:
         planned: dict[int, Timing] = {}
         for i in order:
-            check_time()
-            found = _timed(scene, i, order, {**timings, **planned}, deadlines, solve, memory)
+            search.check_time()
+            found = _timed(search, i, order, {**timings, **planned}, deadlines)
             if found is None:
                 break
             planned[i] = found
@@ -98,48 +132,22 @@ def _in_order(
 
 
 def _timed(
-    scene: Scene,
+    search: _Search,
     i: int,
     group: Sequence[int],
     timings: Mapping[int, Timing],
     deadlines: Mapping[tuple[int, int], float],
-    solve: Solve,
-    memory: _Memory,
 ) -> Timing | None:
     """One robot against those that have a profile, and away from where the others of its group rest or will pass."""
-    near = [k for k in scene.neighbours[i] if k in timings]
+    near = [k for k in search.scene.neighbours[i] if k in timings]
     waits = [(k, deadlines[i, k]) for k in group if (i, k) in deadlines and k not in timings]
     key = i, tuple(timings[k].profile for k in near), tuple(sorted(waits))
-    if key not in memory:
-        memory[key] = _against(scene, i, near, timings, waits, solve)
-    return memory[key]
-
-
-def _against(
-    scene: Scene,
-    i: int,
-    near: Sequence[int],
-    timings: Mapping[int, Timing],
-    waits: Sequence[tuple[int, float]],
-    solve: Solve,
-) -> Timing | None:
-    """The same against some robots with a profile, and with the deadlines of some without."""
-    away = [meeting for k, deadline in waits for meeting in _kept_away(scene, i, k, deadline)]
-    found = solve(scene.egos[i], scene.meetings(i, near, timings) + away)
-    if found is None or not away:
-        return found
-    # a deadline is a choice, not a fact: what it costs proves nothing
-    return dataclasses.replace(
-        found,
-        after=_among(found.after, timings),
-        before=_among(found.before, timings),
-        lower_bound=scene.egos[i].solo_bound,
-        open=True,
-    )
-
-
-def _among(robots: Sequence[int], known: Collection[int]) -> tuple[int, ...]:
-    return tuple(k for k in robots if k in known)
+    if key not in search.memory:
+        search.left -= 1
+        away = [meeting for k, deadline in waits for meeting in _kept_away(search.scene, i, k, deadline)]
+        meetings = search.scene.meetings(i, near, timings) + away
+        search.memory[key] = search.solve(search.scene.egos[i], meetings, hurried=len(group) > 2)
+    return search.memory[key]
 
 
 def _raised(scene: Scene, planned: Collection[int], stuck: int, deadlines: dict[tuple[int, int], float]) -> bool:

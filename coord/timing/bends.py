@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,12 +47,16 @@ class Passages:
     late, long : (P,) times [s], not negative: how much later than the motion without jerk the robot is anywhere
         from that place on, and how much longer it needs from anywhere up to that place.
     total : least time [s] for the whole way.
+    marks : (Q,) some of the places; ``between`` : (Q, Q) how much longer [s] than the motion without jerk every motion
+        needs from one of them to another, however it moves at both.
     """
 
     places: Array
     late: Array
     long: Array
     total: float
+    marks: Array
+    between: Array
 
     def later(self, s: Array) -> Array:
         """How much later (m,) [s] than the motion without jerk every motion is at the arc lengths s (m,) [m]."""
@@ -111,8 +116,35 @@ def passages(path: Path, limits: Limits, relaxed: VelocityProfile) -> Passages |
     total = max(float(reached[-1][0]), relaxed.arrival)
     return Passages(
         frozen(places), frozen(np.maximum(late - _ROUNDING, 0.0)), frozen(np.maximum(long - _ROUNDING, 0.0)),
-        total - _ROUNDING,
+        total - _ROUNDING, *_between(links, relaxed),
     )  # fmt: skip
+
+
+def _between(links: Sequence[_Link], relaxed: VelocityProfile) -> tuple[Array, Array]:
+    """Some places, close together next to nodes, and the least extra time from each to each behind a node."""
+    picked = [_graded(len(link.places)) for link in links]
+    first = np.cumsum([0, *(len(some) for some in picked)])
+    marks = np.concatenate([link.places[some] for link, some in zip(links, picked, strict=True)])
+    alone = time_at(relaxed, marks)
+    extra = np.zeros((len(marks), len(marks)))
+    for m, link in enumerate(links):
+        rows = slice(first[m], first[m + 1])
+        needed = link.until[:, picked[m]].T  # from each place to each cell of the node behind the link
+        for k in range(m + 1, len(links)):
+            columns = slice(first[k], first[k + 1])
+            since = links[k].since[:, picked[k]]
+            least = (needed[:, :, None] + since[None]).min(axis=1)
+            extra[rows, columns] = least - (alone[None, columns] - alone[rows, None])
+            needed = (needed[:, :, None] + links[k].times[None]).min(axis=1)
+    # what is needed on a part of the way is needed on the whole
+    extra = np.maximum.accumulate(np.maximum.accumulate(extra[::-1], axis=0)[::-1], axis=1)
+    return frozen(marks), np.maximum(extra - _ROUNDING, 0.0)
+
+
+def _graded(count: int) -> list[int]:
+    """Indices below a count, close together at both ends."""
+    steps = [0, *(2**k for k in range(count.bit_length()) if 2**k < count)]
+    return sorted({*steps, *(count - 1 - step for step in steps)})
 
 
 def _sections(path: Path, limits: Limits) -> tuple[Array, Array]:

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.alone.inverse import time_at
 from coord.conflicts.inner import inner_regions
@@ -19,6 +21,7 @@ from coord.conflicts.region import ConflictRegion
 from coord.conflicts.window import Window
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
+from coord.timing.bends import Passages
 from coord.timing.ego import Ego, earliest, still_needed
 from coord.timing.meeting import Meeting
 from coord.timing.reach import Part, part
@@ -39,6 +42,7 @@ class Claim:
     leaves, since : (n,) times [s], increasing, and the least times [s] from ego's start to where it may be by then at
         most, passing after; infinite where it may be anywhere.
     comes, by : (m,) times [s] and the least times [s] from the start to where it must be by then, passing before.
+    tight : what matters of both where bends lie in between; None on paths without any.
     """
 
     after: float
@@ -47,6 +51,7 @@ class Claim:
     since: Array
     comes: Array
     by: Array
+    tight: Tight | None
 
 
 def window_claim(ego: Ego, window: Window) -> Claim:
@@ -61,10 +66,30 @@ def could_hold_up(ego: Ego, meeting: Meeting, arrival: float) -> bool:
     return bool(last + still_needed(ego, np.array([low]))[0] > arrival)
 
 
+#: Moments (m,) [s], least and largest forbidden arc length (m,), (m,) [m] then, and whether the last hold for ever.
+Forbidden: TypeAlias = tuple[Array, Array, Array, bool]
+
+
+def forbidden(ego: Ego, meeting: Meeting) -> list[Forbidden]:
+    """The parts of a meeting where every place is truly forbidden."""
+    found: list[Forbidden] = []
+    for region in inner_regions(meeting.region, ego.length):
+        times = _moments(region, meeting.profile)
+        if len(times):
+            lasts = meeting.ends.other_parks and bool(region.sigma[-1] >= meeting.profile.length)
+            found.append((times, *_ends(region, meeting.profile.state(times)[:, 0]), lasts))
+    return found
+
+
 def inner_claims(ego: Ego, meeting: Meeting) -> list[Claim]:
     """What is asked by the parts of a meeting that are truly forbidden."""
+    return claims_of(ego, forbidden(ego, meeting))
+
+
+def claims_of(ego: Ego, truly: Sequence[Forbidden]) -> list[Claim]:
+    """What forbidden parts ask."""
     found = []
-    for times, low, high, lasts in _forbidden(ego, meeting):
+    for times, low, high, lasts in truly:
         if lasts:
             times, low, high = np.append(times, np.inf), np.append(low, low[-1]), np.append(high, high[-1])
         found.append(_claim(ego, times, low, high, lasts))
@@ -73,16 +98,12 @@ def inner_claims(ego: Ego, meeting: Meeting) -> list[Claim]:
 
 def inner_parts(ego: Ego, meeting: Meeting) -> list[Part]:
     """The parts of a meeting that are truly forbidden, for ``coord.timing.outer``."""
-    return [part(ego, times, low, high, lasts=lasts) for times, low, high, lasts in _forbidden(ego, meeting)]
+    return parts_of(ego, forbidden(ego, meeting))
 
 
-def _forbidden(ego: Ego, meeting: Meeting) -> Iterator[tuple[Array, Array, Array, bool]]:
-    """For each forbidden part moments (m,) [s], the bounds (m,), (m,) [m] then, and whether the last hold for ever."""
-    for region in inner_regions(meeting.region, ego.length):
-        times = _moments(region, meeting.profile)
-        if len(times):
-            lasts = meeting.ends.other_parks and bool(region.sigma[-1] >= meeting.profile.length)
-            yield times, *_ends(region, meeting.profile.state(times)[:, 0]), lasts
+def parts_of(ego: Ego, truly: Sequence[Forbidden]) -> list[Part]:
+    """The same for forbidden parts that are known."""
+    return [part(ego, times, low, high, lasts=lasts) for times, low, high, lasts in truly]
 
 
 def _claim(ego: Ego, times: Array, low: Array, high: Array, lasts: bool) -> Claim:
@@ -96,18 +117,69 @@ def _claim(ego: Ego, times: Array, low: Array, high: Array, lasts: bool) -> Clai
     order = np.argsort(times, kind="stable")
     since = np.where(low < length, time_at(ego.relaxed, at), np.inf)
     by = np.where(high > 0, time_at(ego.relaxed, past), -np.inf)
-    return Claim(after, can_precede, times[order], since[order], times, by)
+    leaves, since = times[order], since[order]
+    return Claim(after, can_precede, leaves, since, times, by, _tight(ego, leaves, since, times, by))
 
 
-def are_compatible(after: Claim, before: Claim) -> bool:
+def are_compatible(ego: Ego, after: Claim, before: Claim) -> bool:
     """Whether the time suffices from every point of the one bound to every point of the other."""
     # a point of the one that lies later holds as it is; one that lies earlier lets the robot go on at its quickest
-    finite = np.isfinite(after.leaves)
+    finite = np.isfinite(after.leaves) & np.isfinite(after.since)
     leaves, since = after.leaves[finite], after.since[finite]
     later = np.append(np.minimum.accumulate(since[::-1])[::-1], np.inf)
     earlier = np.append(np.inf, np.minimum.accumulate(since - leaves))
     count = np.searchsorted(leaves, before.comes, side="left")
-    return bool(np.all(np.minimum(later[count], earlier[count] + before.comes) >= before.by))
+    if not np.all(np.minimum(later[count], earlier[count] + before.comes) >= before.by):
+        return False
+    return ego.bends is None or _go_through_bends(ego.bends, after.tight, before.tight)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tight:
+    """The points of a claim that leave the robot least time, one between each two marks of the bends.
+
+    Parameters
+    ----------
+    at, clocks, marks : of the points where it passes after: times [s], least times from the start [s], and the marks
+        that follow; ``by``, ``by_clocks``, ``by_marks`` : where it passes before, the marks before them.
+    """
+
+    at: Array
+    clocks: Array
+    marks: npt.NDArray[np.intp]
+    by: Array
+    by_clocks: Array
+    by_marks: npt.NDArray[np.intp]
+
+
+def _tight(ego: Ego, leaves: Array, since: Array, comes: Array, by: Array) -> Tight | None:
+    if ego.bends is None:
+        return None
+    marks = time_at(ego.relaxed, ego.bends.marks)
+    after = np.flatnonzero(np.isfinite(leaves) & (since < marks[-1]))
+    before = np.flatnonzero(np.isfinite(comes) & (by > 0))
+    i = np.searchsorted(marks, since[after], side="left")
+    k = np.searchsorted(marks, by[before], side="right") - 1
+    first, last = _least_of_each(i, (since - leaves)[after]), _least_of_each(k, (comes - by)[before])
+    after, before = after[first], before[last]
+    return Tight(leaves[after], since[after], i[first], comes[before], by[before], k[last])
+
+
+def _least_of_each(groups: npt.NDArray[np.intp], values: Array) -> npt.NDArray[np.intp]:
+    """The index of the least value of each group."""
+    order: npt.NDArray[np.intp] = np.lexsort((values, groups))
+    first: npt.NDArray[np.intp] = order[np.append(True, np.diff(groups[order]) > 0)[: len(order)]]
+    return first
+
+
+def _go_through_bends(bends: Passages, after: Tight | None, before: Tight | None) -> bool:
+    """Whether the time suffices with the jerk at bends in between as well."""
+    if after is None or before is None:
+        return True
+    spare = (before.by[None] - after.at[:, None]) - (before.by_clocks[None] - after.clocks[:, None])
+    needed = bends.between[after.marks[:, None], before.by_marks[None]]
+    comes_later = (before.by[None] > after.at[:, None]) & (before.by_marks[None] > after.marks[:, None])
+    return not bool(np.any(comes_later & (spare < needed)))
 
 
 def least_arrival(ego: Ego, claims: Sequence[Claim], enough: float, ahead_of: Claim | None = None) -> float:
@@ -119,7 +191,7 @@ def least_arrival(ego: Ego, claims: Sequence[Claim], enough: float, ahead_of: Cl
     when passed after is tried on both sides.
     """
     costly = sorted((claim for claim in claims if claim.after > ego.solo_bound), key=lambda claim: -claim.after)
-    fits = [[claim is other or are_compatible(claim, other) for other in costly] for claim in costly]
+    fits = [[claim is other or are_compatible(ego, claim, other) for other in costly] for claim in costly]
     chosen = {k: False for k, claim in enumerate(costly) if claim is ahead_of}
     queue: list[tuple[float, int, dict[int, bool]]] = [(ego.solo_bound, 0, chosen)]
     pushed = itertools.count(1)

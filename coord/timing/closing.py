@@ -6,14 +6,14 @@ a motion might be like that does, and through the tube along that the inner prog
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
-from coord.timing.bounds import inner_parts
+from coord.timing.bounds import Forbidden, parts_of
 from coord.timing.ego import Ego
 from coord.timing.grid import Course
 from coord.timing.meeting import Meeting, first_violated
@@ -60,15 +60,20 @@ class Closing:
 class _Chase:
     """The best profile and the bound, as they are improved in turn."""
 
-    def __init__(self, ego: Ego, meetings: Sequence[Meeting], best: VelocityProfile, bound: float) -> None:
+    def __init__(
+        self, ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]],
+        best: VelocityProfile, bound: float,
+    ) -> None:  # fmt: skip
         self.ego, self.meetings, self.best, self.bound = ego, meetings, best, bound
+        self.forbidden = forbidden
         self.most, self.fine, self.programs = 0, False, 0
         self.near: list[int] = []
+        self.failed: set[frozenset[tuple[int, bool]]] = set()
         self.parts: list[Part] = []
         self.owners: list[int] = []
 
     def add(self, index: int) -> None:
-        found = inner_parts(self.ego, self.meetings[index])
+        found = parts_of(self.ego, self.forbidden(index))
         self.near.append(index)
         self.parts += found
         self.owners += [index] * len(found)
@@ -97,8 +102,12 @@ class _Chase:
             return False
         chosen = {index: _passes_after(verdict.course, self.meetings[index].window) for index in self.near}
         chosen |= {self.owners[k]: after for k, after in verdict.sides.items()}
+        sides = frozenset(chosen.items())
+        if sides in self.failed:
+            return False
         profile = _along(self.ego, self.meetings, chosen, verdict.course, self.bound, self.best.arrival * (1 - _WORTH))
         if profile is None:
+            self.failed.add(sides)
             return False
         violated = first_violated(list(self.meetings), profile)
         if violated is None:
@@ -111,19 +120,20 @@ class _Chase:
 
 
 def close_gap(
-    ego: Ego, meetings: Sequence[Meeting], near: Sequence[int], best: VelocityProfile, bound: float, *,
-    most: int, enough: float, decided: bool,
+    ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]], near: Sequence[int],
+    best: VelocityProfile, bound: float, *, most: int, enough: float, decided: bool,
 ) -> Closing:  # fmt: skip
     """Raise a certified bound [s] and improve on a profile until they are as good as equal.
 
     Parameters
     ----------
+    forbidden : what is truly forbidden in a meeting, by index.
     near : meetings, by index, that are likely to matter; leaving one out never makes a bound too late.
     most : so many relaxations may be solved.
     enough : gaps below this share of the arrival are left; CLOSED or less asks for a finer relaxation, too.
     decided : whether it is known already that no other choice of before and after is better.
     """
-    chase = _Chase(ego, meetings, best, bound)
+    chase = _Chase(ego, meetings, forbidden, best, bound)
     chase.most, chase.fine = most, enough <= CLOSED
     for index in near:
         chase.add(index)

@@ -12,9 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.alone.speed_limit import SpeedLimit
 from coord.model.arrays import Array
+from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.solvers.linear import SIZES, Cells
 from coord.timing.tube import Tube, lower_on_cells, upper_on_cells
@@ -54,6 +56,13 @@ class Course:
         """Arc lengths (m,) [m] at the times (m,) [s]."""
         return np.asarray(np.interp(times, self.times, self.s))
 
+    @property
+    def profile(self) -> VelocityProfile:
+        """The same with even speed in between: no motion that a robot could make, but it can be looked at as one."""
+        speeds = np.append(np.diff(self.s) / np.diff(self.times), 0.0)
+        states = np.stack([self.s, speeds, np.zeros_like(speeds)], axis=1)
+        return VelocityProfile(self.times, states, np.zeros(len(speeds) - 1))
+
     def until(self, departure: float, arrival: float) -> Course:
         """The same course with its times stretched to a departure and an arrival [s]."""
         first, last = self.times[0], self.times[-1]
@@ -86,7 +95,7 @@ def time_knots(
     None where that would be more than the largest program has. ``mesh`` scales all cells.
     """
     spans = tube.spans
-    events = {departure, arrival, *(t for span in spans for t in span), *further}
+    events = {departure, arrival, *tube.events, *further}
     knots = sorted(t for t in events if departure <= t <= arrival)
     shortest = max(_FIRST_CELL * min(limits.acceleration, limits.deceleration) / limits.jerk, 0.02) * mesh
     times = [departure]
@@ -140,44 +149,52 @@ def course_through(times: Array, states: Array) -> Course:
     return Course(at, np.maximum.accumulate(np.append(within.ravel(), states[-1, 0])))
 
 
-def cells_in(
-    tube: Tube, times: Array, length: float, caps: SpeedLimit, course: Course | None, lead: float = 0.0
-) -> Cells:
-    """The cells between the knots with the bounds of the tube, and the caps of the sections where the course is.
+def cells_in(tube: Tube, times: Array, length: float, caps: SpeedLimit, course: Course | None) -> Cells:
+    """The cells between the knots with the bounds of the tube, and the caps of the sections where the course is."""
+    if caps.is_constant or course is None:
+        return _cells(tube, times, length, *_anywhere(caps, len(times) - 1))
+    borders = caps.ends[:-1]
+    first = np.searchsorted(borders, course.at(times[:-1]) + SAME_PLACE, side="right")
+    last = np.searchsorted(borders, course.at(times[1:]) - SAME_PLACE, side="left")
+    return _cells(tube, times, length, *_stretches(caps, first, np.maximum(first, last)))
 
-    ``lead`` : where the course will be in so many seconds [s] counts as well.
-    """
+
+def cells_between(tube: Tube, times: Array, length: float, caps: SpeedLimit, passes: Array) -> Cells:
+    """The same where the borders of the sections are passed at the knots ``passes`` (m,) [s]."""
+    section = np.searchsorted(passes, (times[:-1] + times[1:]) / 2)
+    return _cells(tube, times, length, *_stretches(caps, section, section))
+
+
+def _cells(tube: Tube, times: Array, length: float, top: Array, first: Array, last: Array) -> Cells:
+    """Cells within the tube and between two places each, with the largest speeds (N,) [m/s]."""
     n = len(times) - 1
-    upper, lower = np.full((n, 4), np.inf), np.full((n, 4), -np.inf)
+    upper, lower = np.repeat(last[:, None], 4, axis=1), np.repeat(first[:, None], 4, axis=1)
     for bound in tube.upper:
         np.minimum(upper, upper_on_cells(bound, times, _TUBE_MARGIN), out=upper)
     for bound in tube.lower:
         np.maximum(lower, np.minimum(lower_on_cells(bound, times, _TUBE_MARGIN), length), out=lower)
-    if caps.is_constant or course is None:
-        top = np.full(n, float(caps.caps.min(initial=np.inf)))
-    else:
-        top, first, last = _stretches(caps, course.at(times[:-1]), course.at(times[1:] + lead))
-        np.maximum(lower, first[:, None], out=lower)
-        np.minimum(upper, last[:, None], out=upper)
-    return Cells(np.diff(times), upper, lower, top * (1 - LIMIT_MARGIN))
+    return Cells(np.diff(times), upper, lower, top[:n] * (1 - LIMIT_MARGIN))
 
 
-def _stretches(caps: SpeedLimit, s_from: Array, s_to: Array) -> tuple[Array, Array, Array]:
-    """For each cell its cap (n,) [m/s], and the stretch (n,), (n,) [m] about it where no cap is lower."""
-    count = len(caps.caps)
-    borders, values = caps.ends[:-1], caps.caps.tolist()
-    begin = np.searchsorted(borders, s_from + SAME_PLACE, side="right").tolist()
-    end = np.searchsorted(borders, s_to - SAME_PLACE, side="left").tolist()
-    rows = []
-    for i, k in zip(begin, end, strict=True):
-        cap = min(values[i : max(i, k) + 1])
-        first, last = i, max(i, k)
-        while first > 0 and values[first - 1] >= cap:
-            first -= 1
-        while last < count - 1 and values[last + 1] >= cap:
-            last += 1
-        low = borders[first - 1] + _TUBE_MARGIN if first > 0 else -np.inf
-        high = borders[last] - _TUBE_MARGIN if last < count - 1 else np.inf
-        rows.append((cap, low, high))
-    top, low, high = np.array(rows).T
-    return top, low, high
+def _anywhere(caps: SpeedLimit, n: int) -> tuple[Array, Array, Array]:
+    """The lowest cap for all cells (n,), and no bound on the places."""
+    return np.full(n, float(caps.caps.min(initial=np.inf))), np.full(n, -np.inf), np.full(n, np.inf)
+
+
+def _stretches(caps: SpeedLimit, first: npt.NDArray[np.intp], last: npt.NDArray[np.intp]) -> tuple[Array, Array, Array]:
+    """For cells (n,) from one section to another the cap [m/s], and the stretch about them where no cap is lower."""
+    values, borders = caps.caps.tolist(), caps.ends[:-1]
+    known: dict[tuple[int, int], tuple[float, float, float]] = {}
+    pairs = list(zip(first.tolist(), last.tolist(), strict=True))
+    for i, k in dict.fromkeys(pairs):
+        cap = min(values[i : k + 1])
+        begin, end = i, k
+        while begin > 0 and values[begin - 1] >= cap:
+            begin -= 1
+        while end < len(values) - 1 and values[end + 1] >= cap:
+            end += 1
+        low = borders[begin - 1] + _TUBE_MARGIN if begin > 0 else -np.inf
+        high = borders[end] - _TUBE_MARGIN if end < len(values) - 1 else np.inf
+        known[i, k] = (cap, float(low), float(high))
+    top, low_ends, high_ends = np.array([known[pair] for pair in pairs]).T
+    return top, low_ends, high_ends

@@ -8,6 +8,7 @@ order of their lower bounds, until none is left below the best profile found.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,19 +16,26 @@ import numpy as np
 from coord.alone.check import keeps_limits
 from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
-from coord.timing.bounds import Claim, are_compatible, could_hold_up, inner_claims, least_arrival, window_claim
+from coord.timing.bounds import (
+    Claim,
+    Forbidden,
+    are_compatible,
+    claims_of,
+    could_hold_up,
+    forbidden,
+    least_arrival,
+    window_claim,
+)
 from coord.timing.closing import CLOSED, close_gap
 from coord.timing.delay import Contact, after_contact, before_contact, start_delay
 from coord.timing.ego import Ego
 from coord.timing.gentle import gentle
+from coord.timing.haste import hasty_course
 from coord.timing.meeting import Meeting, first_violated
 from coord.timing.program import through_tube
 from coord.timing.splice import spliced
 from coord.timing.tube import Tube, after_bound, before_bound
 from coord.tolerances import OPTIMAL
-
-#: [s] With so much less delay, the window that a delay is for is violated.
-_A_LITTLE = 1e-3
 
 #: To close the gap to a robot's bound: so many relaxations are solved at most, and a gap below such a share of the
 #: arrival is left as it is. The second effort is made where proof is asked for.
@@ -35,6 +43,9 @@ _EFFORTS = ((60, 5e-3), (600, CLOSED))
 
 #: How a robot drives for which nothing has been found yet.
 _NONE = "none"
+
+#: What a subproblem yields when it is still to be branched: no motion but a course that forgets the jerk.
+_COURSE = "course"
 
 #: Subproblems looked at for one robot before the best profile found is taken as it is.
 MOST_NODES = 60
@@ -73,6 +84,7 @@ class _Search:
     afters: dict[int, Contact] = field(default_factory=dict)
     befores: dict[int, Contact] = field(default_factory=dict)
     claims: dict[int, Claim] = field(default_factory=dict)
+    truly: dict[int, list[Forbidden]] = field(default_factory=dict)
 
     @property
     def known(self) -> set[int]:
@@ -97,13 +109,23 @@ class _Search:
             self.claims[index] = window_claim(self.ego, self.window(index))
         return self.claims[index]
 
+    def forbidden(self, index: int) -> list[Forbidden]:
+        if index not in self.truly:
+            self.truly[index] = forbidden(self.ego, self.meetings[index])
+        return self.truly[index]
+
     def take(self, profile: VelocityProfile, how: str) -> None:
         if profile.arrival < self.best.arrival:
             self.best, self.how = profile, how
 
 
 def time_robot(
-    ego: Ego, meetings: list[Meeting], *, is_last: bool = False, profile: str = "fastest", certify: bool = False
+    ego: Ego,
+    meetings: list[Meeting],
+    *,
+    profile: str = "fastest",
+    certify: bool = False,
+    hurried: bool = False,
 ) -> Timing | None:
     """The quickest profile found for ego that is clear of all meetings.
 
@@ -114,8 +136,7 @@ def time_robot(
     ----------
     profile : "fastest": as early as possible; "gentle": a delayed robot may arrive a little later where it then
         drives more smoothly.
-    is_last : nobody planned later can meet ego. Then it may roll and slow down instead of waiting at its
-        start. Done by everybody, this was measured to cost those who come later more than it gains.
+    hurried : whether the first profile found will do, without a bound that tells how good it is.
     """
     violated = first_violated(meetings, ego.alone)
     if violated is None:
@@ -124,11 +145,15 @@ def time_robot(
     # where no delay helps, ego has to be gone before somebody comes: then anything is better than a time far away
     search = _Search(ego, meetings, delayed or _far_away(ego, meetings), _NONE if delayed is None else "start delay")
     nodes, is_open = _branch_and_bound(search)
-    bound, near = _certified(search)
+    if hurried and search.how != _NONE:
+        return _finished(search.best, meetings, search.how, ego.solo_bound, nodes, True)
+    bound, near = _certified(search, OPTIMAL if certify or ego.caps.is_constant else CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
-            closing = close_gap(ego, meetings, near, search.best, bound, most=most, enough=enough, decided=not is_open)
+            closing = close_gap(
+                ego, meetings, search.forbidden, near, search.best, bound, most=most, enough=enough, decided=not is_open
+            )
             bound, is_open = closing.bound, not closing.is_decided
             if closing.is_new:
                 search.take(closing.profile, "program")
@@ -138,32 +163,12 @@ def time_robot(
         calm = gentle(ego, meetings, search.best, sorted(search.known))
         if calm is not None:
             return _finished(calm, meetings, "gentle", bound, nodes, is_open)
-    if search.how == "start delay" and is_last:
-        _give_way_on_the_move(search)
     return _finished(search.best, meetings, search.how, bound, nodes, is_open)
 
 
 def _far_away(ego: Ego, meetings: list[Meeting]) -> VelocityProfile:
     """The profile alone so late that nobody who has a motion moves any more when it begins."""
     return ego.alone.shifted(max(meeting.profile.arrival for meeting in meetings))
-
-
-def _give_way_on_the_move(search: _Search) -> None:
-    """Replace waiting at the start by slowing down on the way, where that arrives no later.
-
-    For the robot's own arrival the two are the same; seen from the floor, the one stands in nobody's way for
-    long, and drives with fewer stops.
-    """
-    ego, delayed = search.ego, search.best
-    delay = delayed.departure - ego.alone.departure
-    binding = first_violated(search.meetings, ego.alone.shifted(delay - _A_LITTLE))
-    if binding is None:
-        return
-    contact = search.after(binding[0])
-    for profile in spliced(ego, [Contact(delay, contact.time, contact.s)], []):
-        if first_violated(search.meetings, profile) is None and keeps_limits(profile, ego.robot.limits, ego.caps):
-            search.best, search.how = profile, "splice"
-            return
 
 
 def _branch_and_bound(search: _Search) -> tuple[int, bool]:
@@ -180,13 +185,15 @@ def _branch_and_bound(search: _Search) -> tuple[int, bool]:
         if profile is None:
             undecided = True
             continue
+        # on a path with bends a program's motion is the best of those about its course, not of all
+        undecided |= how == "program" and not search.ego.caps.is_constant
         if not _can_beat(profile.arrival, search.best):
             continue
-        violated = first_violated(search.meetings, profile)
+        violated = _first_violated(search, profile, chosen if how == _COURSE else {})
         if violated is None:
             search.take(profile, how)
             continue
-        index = violated[0]
+        index = violated
         if index in chosen:  # a bound of the tube was missed by rounding
             undecided = True
             continue
@@ -219,7 +226,7 @@ def _bound(search: _Search, chosen: dict[int, bool]) -> float:
             return np.inf
     for a in (index for index, passes_after in chosen.items() if passes_after):
         for b in (index for index, passes_after in chosen.items() if not passes_after):
-            if not are_compatible(claims[a], claims[b]):
+            if not are_compatible(search.ego, claims[a], claims[b]):
                 return np.inf
     return bound
 
@@ -235,16 +242,24 @@ def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[Ve
     for profile in spliced(ego, afters, befores):
         if _keeps_choices(search, chosen, profile) and keeps_limits(profile, ego.robot.limits, ego.caps):
             return profile, "splice"
-    if not ego.caps.is_constant:  # a program needs a course there, which the outer program finds
-        return None, ""
     tube = Tube(
         [after_bound(search.window(index)) for index, passes_after in chosen.items() if passes_after],
         [before_bound(search.window(index)) for index, passes_after in chosen.items() if not passes_after],
     )
-    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL))
+    course = None if ego.caps.is_constant else hasty_course(ego, tube)
+    if course is not None and _first_violated(search, course.profile, chosen) is not None:
+        return course.profile, _COURSE
+    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL), course)
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"
+
+
+def _first_violated(search: _Search, profile: VelocityProfile, besides: Mapping[int, bool]) -> int | None:
+    """The meeting, by index, at which a profile first runs into another robot, some of them left out."""
+    kept = [index for index in range(len(search.meetings)) if index not in besides]
+    violated = first_violated([search.meetings[index] for index in kept], profile)
+    return None if violated is None else kept[violated[0]]
 
 
 def _keeps_choices(search: _Search, chosen: dict[int, bool], profile: VelocityProfile) -> bool:
@@ -257,26 +272,28 @@ def _keeps_choices(search: _Search, chosen: dict[int, bool], profile: VelocityPr
     return True
 
 
-def _certified(search: _Search) -> tuple[float, list[int]]:
-    """An arrival [s] that no motion can beat, and the meetings, by index, that it follows from.
+def _certified(search: _Search, enough: float) -> tuple[float, list[int]]:
+    """An arrival [s] that no motion can beat, and the meetings, by index, that are likely to hold ego up.
 
-    It comes from what is truly forbidden in the meetings that came up in the search.
-
-    Leaving out a meeting never makes a bound too late. Where these few leave much open, all others are added that
-    could hold ego up for longer.
+    It comes from what is truly forbidden in the meetings that came up in the search, and where these leave much open,
+    in all others that could hold ego up for longer. Leaving out a meeting never makes a bound too late, so they are
+    added one after the other until the gap is below the share ``enough`` of the arrival.
     """
     ego, arrival = search.ego, search.best.arrival
-    claims = [claim for index in sorted(search.known) for claim in inner_claims(ego, search.meetings[index])]
-    bound = max(ego.solo_bound, least_arrival(ego, claims, arrival))
-    if bound >= arrival * (1 - CLOSED):
-        return bound, sorted(search.known)
+    bound, claims = ego.solo_bound, []
+    # those that cost most when passed after tell most: often a few of them prove all that there is to prove
+    known = sorted(search.known, key=lambda index: (-search.claim(index).after, index))
     further = [
         index
         for index, meeting in enumerate(search.meetings)
-        if index not in search.known and could_hold_up(ego, meeting, bound)
+        if index not in search.known and could_hold_up(ego, meeting, ego.solo_bound)
     ]
-    claims += [claim for index in further for claim in inner_claims(ego, search.meetings[index])]
-    return max(bound, least_arrival(ego, claims, arrival)), sorted({*search.known, *further})
+    for count, index in enumerate([*known, *further], start=1):
+        claims += claims_of(ego, search.forbidden(index))
+        bound = max(bound, least_arrival(ego, claims, arrival))
+        if bound >= arrival * (1 - (enough if count < len(known) else CLOSED)):
+            break
+    return bound, sorted({*known, *further})
 
 
 def _finished(

@@ -8,6 +8,7 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,10 +17,11 @@ from coord.alone.check import keeps_limits
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
-from coord.solvers.linear import farthest_way, smoothest
+from coord.solvers.linear import Cells, farthest, smoothest
 from coord.timing.ego import Ego
-from coord.timing.grid import Course, border_times, cells_in, course_through, time_knots
+from coord.timing.grid import Course, border_times, cells_between, cells_in, time_knots
 from coord.timing.polish import land_exactly
+from coord.timing.rounds import Settled, first_guess, is_hopeless, rounds
 from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
@@ -35,17 +37,8 @@ _ARRIVAL_STEP = 2e-3
 #: [m] An upper bound below this holds the robot at its start: it departs when the bound has risen above.
 _AT_START = 2e-3
 
-#: [s] So much later than on a course the robot may arrive at first.
-_LATER = (0.0, 1.0)
-
-#: [m] By so much the bounds are eased, one after the other; and how many times that may lack at the goal.
-_EASES, _LACK = (0.03, 0.015, 0.008, 0.004, 0.002, 0.001, 0.0), 3.0
-
-#: The search from above ends after so many arrivals, or when the last ones differ by less than this share.
-_FALLS, _NEAR = 10, 1e-3
-
-#: [s] How much earlier than on the last course the robot may enter a bend, at the price of the bend's cap until then.
-_LEADS = (0.05, 0.0, 3.0, 0.8, 0.1)
+#: On paths with bends, and how much longer than in the rounds a motion may take to fit exactly [s].
+_MESHES_OF_BENDS, _PAUSES = (1.0, 0.4, 0.16), (0.0, 2e-3, 1e-2, 3e-2)
 
 #: Samples of a profile for its course.
 _SAMPLES = 400
@@ -67,15 +60,15 @@ def through_tube(
     ----------
     course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
     """
-    if course is None and not ego.caps.is_constant:
-        return None
+    if not ego.caps.is_constant:
+        return None if course is None else _round_bends(ego, tube, least, most, course)
     best = None
     for mesh in _MESHES:
         attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
-        profile = _through(attempt, least, most, course)
+        profile = _through(attempt, least, most)
         if profile is not None and (best is None or profile.arrival < best.arrival):
             best = profile
-            most, course = best.arrival * (1 - _FINER), None if course is None else course_of(best, attempt.departure)
+            most = best.arrival * (1 - _FINER)
         if best is not None and best.arrival <= least * (1 + _FINER):
             break
     return best
@@ -110,20 +103,13 @@ class _Attempt:
     mesh: float
 
 
-def _through(attempt: _Attempt, least: float, most: float, course: Course | None) -> VelocityProfile | None:
-    if course is None:
-        if _reach(attempt, most, None)[0] < 0:
-            return None
-        arrival = _rising(attempt, least, most)
-    else:
-        first = _first(attempt, most, course)
-        if first is None:
-            return None
-        most, course = first
-        arrival, course = _falling(attempt, least, most, course)
+def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | None:
+    if _reach(attempt, most) < 0:
+        return None
+    arrival = _rising(attempt, least, most)
     for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
         at = min(arrival + pause, most)
-        profile = _smooth(attempt, at, course)
+        profile = _smooth(attempt, at, None)
         if profile is not None:
             return profile
         if at == most:
@@ -131,53 +117,12 @@ def _through(attempt: _Attempt, least: float, most: float, course: Course | None
     return None
 
 
-def _first(attempt: _Attempt, most: float, course: Course) -> tuple[float, Course] | None:
-    """An arrival up to ``most`` that is possible, and its course; None where none is found.
-
-    The course is only rough, and a bend entered a moment too late can leave a narrow tube without any motion. So the
-    program is solved with all bounds eased, then less and less so, each time with the bends where the last solution
-    has them. That is tried with the course's own arrival and with a little more time; at last the course is
-    stretched over all the time there is.
-    """
-    end = float(course.times[-1])
-    for more in _LATER:
-        arrival = min(end + more, most)
-        eased = _eased(attempt, arrival, course)
-        if eased is not None:
-            return arrival, eased
-        if arrival == most:
-            return None
-    reached, better = _reach(attempt, most, course.until(attempt.departure, most))
-    return (most, better) if reached >= 0 and better is not None else None
-
-
-def _eased(attempt: _Attempt, arrival: float, course: Course) -> Course | None:
-    """The course of a motion that is beyond its goal by the arrival; None where none is found."""
-    length = attempt.ego.length
-    for ease in _EASES:
-        for lead in _LEADS[:2]:
-            times = _knots(attempt, arrival, course)
-            if times is None:
-                return None
-            now = course.within(attempt.departure, arrival)
-            cells = cells_in(attempt.tube, times, length, attempt.ego.caps, now, lead)
-            cells = replace(cells, upper=cells.upper + ease, lower=cells.lower - ease)
-            states = farthest_way(cells, attempt.limits)
-            if states is not None and states[-1, 0] >= length - _LACK * ease:
-                course = course_through(times, states)
-                break
-        else:
-            return None
-    return course
-
-
 def _rising(attempt: _Attempt, least: float, most: float) -> float:
     """The least arrival on the grid, from below: where metres lack, so many seconds more are needed at least."""
     ego = attempt.ego
     arrival = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
     while True:
-        reached, _ = _reach(attempt, arrival, None)
-        step = min(max(-reached, 0.0), 10 * ego.length) / attempt.limits.speed
+        step = min(max(-_reach(attempt, arrival), 0.0), 10 * ego.length) / attempt.limits.speed
         if arrival + step >= most:
             return most
         arrival += step
@@ -185,50 +130,52 @@ def _rising(attempt: _Attempt, least: float, most: float) -> float:
             return arrival
 
 
-def _falling(attempt: _Attempt, least: float, most: float, course: Course) -> tuple[float, Course]:
-    """An early arrival and its course, from above: only a course that gets there tells which cells are in which bend.
-
-    The robot that gets farthest passes its goal at speed; had it stopped there, it would have arrived about a
-    stop later. That is tried first, then the middle between what is known to do and what is not.
-    """
-    ego, low, arrival = attempt.ego, least, most
-    stop = float(ego.landing.profile.arrival) - ego.landing.profile.length / ego.landing.speed
-    for _ in range(_FALLS):
-        trial = float(course.passes(np.array([ego.length]))[0]) + stop
-        if not low < trial < arrival - _ARRIVAL_STEP:
-            trial = (low + arrival) / 2
-        reached, better = _reach(attempt, trial, course.cut(trial, ego.length))
-        if reached < 0:
-            better = _eased(attempt, trial, course.cut(trial, ego.length))
-        if better is not None:
-            arrival, course = trial, better
-        else:
-            low = trial
-        if arrival - low < _NEAR * arrival:
-            break
-    return arrival, course.cut(arrival, ego.length)
+def _reach(attempt: _Attempt, arrival: float) -> float:
+    """How far beyond its goal [m] the robot could rest at the arrival; negative where it cannot get there."""
+    ego = attempt.ego
+    times = _knots(attempt, arrival, None)
+    if times is None:
+        return -np.inf
+    reached = farthest(cells_in(attempt.tube, times, ego.length, ego.caps, None), attempt.limits)
+    return -np.inf if reached is None else reached - ego.length
 
 
-def _reach(attempt: _Attempt, arrival: float, course: Course | None) -> tuple[float, Course | None]:
-    """How far beyond its goal [m] the robot could rest at the arrival, and the course there on a path with bends.
+def _round_bends(ego: Ego, tube: Tube, least: float, most: float, course: Course) -> VelocityProfile | None:
+    """The quickest profile that rounds about a course lead to: finer ones only where they may gain something."""
+    limits, departure = tightened(ego.robot.limits), held_until(ego, tube)
+    settled = first_guess(ego, course, departure, most)
+    for mesh in _MESHES_OF_BENDS:
+        is_first, is_last = mesh == _MESHES_OF_BENDS[0], mesh == _MESHES_OF_BENDS[-1]
+        attempt = _Attempt(ego, tube, limits, departure, mesh)
+        for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first):
+            settled = found
+            if settled.is_near:
+                if not is_last and settled.arrival > least * (1 + _FINER):
+                    break
+                profile = _fitting(attempt, most, settled, _PAUSES[:2])
+                if profile is not None:
+                    return profile
+        if is_hopeless(settled, mesh):
+            return None
+    fits = (_fitting(replace(attempt, mesh=mesh), most, settled, _PAUSES) for mesh in reversed(_MESHES_OF_BENDS))
+    return next((profile for profile in fits if profile is not None), None)
 
-    Negative where it cannot get there. With bends the last solution tells again which cells are in which bend,
-    as long as that gets the robot farther.
-    """
-    ego, reached = attempt.ego, -np.inf
-    for lead in (0.0,) if course is None else _LEADS:
-        times = _knots(attempt, arrival, course)
+
+def _fitting(attempt: _Attempt, most: float, settled: Settled, pauses: Sequence[float]) -> VelocityProfile | None:
+    """The profile with the borders passed as in the rounds, a little later where it does not fit else."""
+    ego = attempt.ego
+    for pause in pauses:
+        arrival = min(settled.arrival + pause, most)
+        passes = settled.passes.tolist()
+        times = time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, passes)
         if times is None:
-            break
-        now = None if course is None else course.within(attempt.departure, arrival)
-        states = farthest_way(cells_in(attempt.tube, times, ego.length, ego.caps, now, lead), attempt.limits)
-        if states is None and lead == _LEADS[0]:
-            break  # later leads ask for more
-        if states is None or states[-1, 0] - ego.length <= reached:
-            continue
-        reached = float(states[-1, 0]) - ego.length
-        course = None if course is None else course_through(times, states)
-    return reached, course
+            return None
+        profile = _profile(attempt, cells_between(attempt.tube, times, ego.length, ego.caps, settled.passes))
+        if profile is not None:
+            return profile
+        if arrival == most:
+            return None
+    return None
 
 
 def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: float = 0.0) -> VelocityProfile | None:
@@ -239,6 +186,12 @@ def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: floa
     if course is not None:
         course = course.within(float(times[0]), arrival)
     cells = cells_in(attempt.tube, times, ego.length, ego.caps, course)
+    return _profile(attempt, cells, ease)
+
+
+def _profile(attempt: _Attempt, cells: Cells, ease: float = 0.0) -> VelocityProfile | None:
+    """The smoothest motion in the cells, exactly at the goal; None where there is none."""
+    ego = attempt.ego
     jerks = smoothest(cells, attempt.limits, ego.length, ease)
     if jerks is None:
         return None
@@ -249,8 +202,11 @@ def _smooth(attempt: _Attempt, arrival: float, course: Course | None, ease: floa
 
 
 def _knots(attempt: _Attempt, arrival: float, course: Course | None) -> Array | None:
-    borders = [] if course is None else border_times(attempt.ego.caps, course.within(attempt.departure, arrival))
-    return time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, borders)
+    if course is None:  # a little is gained, and little lost without bends, by knots where bounds begin to change, too
+        further = [time for span in attempt.tube.spans for time in span]
+    else:
+        further = border_times(attempt.ego.caps, course.within(attempt.departure, arrival))
+    return time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, further)
 
 
 def course_of(profile: VelocityProfile, since: float) -> Course:

@@ -100,6 +100,13 @@ def reach_by(ego: Ego, parts: Sequence[Part], arrival: float) -> Reach:
     return Reach(ego, arrival, parts, times, begins, _latest(ego, arrival, times), _earliest(ego, times))
 
 
+def soonest(ego: Ego, times: Array, high_times: Array, high: Array) -> Array:
+    """The largest arc lengths (m,) [m] at the times (m,) [s], below bounds (n,) [m] at increasing times (n,) [s]."""
+    bounds = Marks(high_times, clock(ego.relaxed, high), np.empty(0), np.empty(0))
+    _, most = _narrowed(bounds, times, np.zeros(len(times)), _earliest(ego, times))
+    return ego.relaxed.state(np.maximum(most, 0.0))[:, 0]
+
+
 def ranges(reach: Reach, bounds: Marks, times: Array) -> tuple[Array, Array]:
     """Least and largest places (m,), (m,) [s in ego's clock] at the times (m,) [s]."""
     low, high = _latest(reach.ego, reach.arrival, times), _earliest(reach.ego, times)

@@ -8,7 +8,9 @@ larger delay. Each step is one arc of ruckig with exactly the duration in betwee
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -34,7 +36,7 @@ class _Step:
     is_after: bool
 
 
-def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[VelocityProfile]:
+def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> Iterator[VelocityProfile]:
     """Profiles with stepwise delays for these contacts, the most promising first; the caller checks them.
 
     Parameters
@@ -43,14 +45,11 @@ def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[Vel
     """
     levels = _levels(afters, befores)
     if levels is None:
-        return []
-    found = []
-    for ending in _ENDINGS:
-        for share in _BEGINNINGS:
-            profile = _chain(ego, levels, ending, share)
-            if profile is not None:
-                found.append(profile)
-    return found
+        return
+    for ending, share in product(_ENDINGS, _BEGINNINGS):
+        profile = _chain(ego, levels, ending, share)
+        if profile is not None:
+            yield profile
 
 
 def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, float, float]] | None:

@@ -35,6 +35,11 @@ class Tube:
     lower: Sequence[Bound]
 
     @property
+    def events(self) -> list[float]:
+        """When bounds from windows passed after end, and those from windows passed before begin [s]."""
+        return [float(bound.times[-1]) for bound in self.upper] + [float(bound.times[0]) for bound in self.lower]
+
+    @property
     def spans(self) -> list[tuple[float, float]]:
         """When each of the bounds begins and ends [s]."""
         return [(float(bound.times[0]), float(bound.times[-1])) for bound in (*self.upper, *self.lower)]

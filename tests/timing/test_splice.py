@@ -34,7 +34,7 @@ def test_a_splice_keeps_the_limits_and_ends_as_late_as_its_last_delay():
         for delays in ((1.5,), (0.8, 4.0), (1.0, 1.0), (0.5, 1.5, 6.0)):
             places = np.linspace(0.45, 0.8, len(delays)) * one.length
             contacts = [contact(one, s, delay) for s, delay in zip(places.tolist(), delays, strict=True)]
-            profiles = spliced(one, contacts, [])
+            profiles = list(spliced(one, contacts, []))
             # an arc that would have to cross the bend at full speed does not exist
             assert profiles or (path is bend and len(set(delays)) > 1)
             for profile in profiles:
@@ -47,7 +47,7 @@ def test_a_place_to_be_passed_before_somebody_is_reached_with_the_delay_up_to_th
     """Before at 8 m with at most 0.5 s, after at 14 m with at least 5 s: on time at the one, late enough at the other."""
     one = robot(straight((0.0, 0.0), (24.0, 0.0)))
     before, after = contact(one, 8.0, 0.5), contact(one, 14.0, 5.0)
-    profiles = spliced(one, [after], [before])
+    profiles = list(spliced(one, [after], [before]))
     assert profiles
     for profile in profiles:
         assert time_at(profile, 8.0)[0] <= before.time + 1e-9
@@ -56,7 +56,7 @@ def test_a_place_to_be_passed_before_somebody_is_reached_with_the_delay_up_to_th
 def test_a_place_behind_that_needs_more_delay_than_a_place_ahead_allows_cannot_be_spliced():
     """After at 8 m with 5 s, before at 14 m with at most 1 s: delays only grow."""
     one = robot(straight((0.0, 0.0), (24.0, 0.0)))
-    assert spliced(one, [contact(one, 8.0, 5.0)], [contact(one, 14.0, 1.0)]) == []
+    assert list(spliced(one, [contact(one, 8.0, 5.0)], [contact(one, 14.0, 1.0)])) == []
 
 
 def test_contacts_at_the_ends_of_the_way_give_valid_profiles_or_none():

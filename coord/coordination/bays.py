@@ -1,0 +1,167 @@
+"""Bays: some robots of a group that cannot leave together on their paths go aside, and wait where they hinder nobody.
+
+On given paths three or more robots can be stuck although every two could pass each other: before a door, say, where
+each comes out of the way of one only by going into that of another. A bay is a place off all their paths. One that
+goes there first, lets the others by, and then goes on, unties the knot.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+
+import numpy as np
+
+from coord.coordination.blocking import in_order
+from coord.coordination.lattice import Floor, Lattice, lattice_of, with_other_path
+from coord.coordination.moves import MOST_STATES, Outcome, moves_home
+from coord.coordination.rerouting import Rerouting
+from coord.coordination.way_round import Rests, rests, way_round
+from coord.geometry.shapes import too_near
+from coord.model.arrays import Array, Point
+from coord.model.problem import Problem
+
+#: [m] Bays are sought on a grid this wide, and keep so much more from paths and places of rest than needed.
+_GRID, _ROOM = 0.25, 0.05
+
+#: Robots of one group that go into bays; bays tried before one is taken; those of one robot, at least so far apart [m].
+_MOST_ROBOTS, _MOST_TRIES, _MOST_BAYS, _APART = 5, 10, 4, 1.5
+
+#: Bays tried in all groups, one in a group counted once more for so many robots; and states looked at for each.
+_MOST_IN_ALL, _LARGE, _FEW_STATES = 30, 8, 40
+
+#: [m] Places of a path are looked at so far apart.
+_SAMPLE = 0.1
+
+
+def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callable[[], None]) -> Rerouting:
+    """Paths on which groups can leave together, as far as bays help; others are left as they are."""
+    search = _Search(problem, rests(problem), shape, check_time, _MOST_IN_ALL)
+    for group in found.together:
+        if len(group) > 2:
+            found = search.untied(found, group)
+    return found
+
+
+@dataclasses.dataclass(slots=True, eq=False)
+class _Search:
+    """What all groups share; ``left`` : how many bays may still be tried."""
+
+    problem: Problem
+    known: Rests
+    shape: str
+    check_time: Callable[[], None]
+    left: int
+
+    def untied(self, found: Rerouting, group: Sequence[int]) -> Rerouting:
+        """The same with some robots of a group on ways through bays; unchanged where that does not help."""
+        lattice = lattice_of(self.floor(found), group)
+        if lattice is None:
+            return found
+        now, outcome = found, moves_home(lattice, MOST_STATES)
+        for _ in range(_MOST_ROBOTS):
+            if outcome.moves is not None:
+                return now
+            better = self.one_more(now, group, lattice, outcome)
+            if better is None:
+                return found
+            now, lattice, outcome = better
+        return now if outcome.moves is not None else found
+
+    def floor(self, found: Rerouting) -> Floor:
+        paths = [route.path for route in found.routes]
+        return Floor(self.problem.robots, paths, frozenset(found.blocks), self.problem.workspace.clearance)
+
+    def one_more(
+        self, found: Rerouting, group: Sequence[int], lattice: Lattice, outcome: Outcome
+    ) -> tuple[Rerouting, Lattice, Outcome] | None:
+        """The same with one more robot on a way through a bay, the first that brings all home or the most forward."""
+        best = None
+        options = (one for n in _in_the_way(lattice, outcome.stuck) for one in self.bays(found, group, n))
+        for n, place in islice(options, _MOST_TRIES):
+            if self.left <= 0:
+                break
+            self.check_time()
+            self.left -= 1 + len(group) // _LARGE  # of large groups each look takes longer
+            changed = self.through(found, group, n, place, outcome.stuck)
+            other = None if changed is None else with_other_path(lattice, self.floor(changed), group, n)
+            if changed is None or other is None:
+                continue
+            after = moves_home(other, _FEW_STATES)
+            if after.moves is not None:
+                return changed, other, after
+            if best is None or after.left < best[2].left:
+                best = changed, other, after
+        return best
+
+    def through(
+        self, found: Rerouting, group: Sequence[int], n: int, place: Point, stuck: Sequence[int]
+    ) -> Rerouting | None:
+        """The same with one robot on a way through a bay, over no place of rest that it did not run over before."""
+        i = group[n]
+        robots = [*self.problem.robots]
+        robots[i] = dataclasses.replace(robots[i], via=(place,))
+        known = dataclasses.replace(self.known, problem=dataclasses.replace(self.problem, robots=tuple(robots)))
+        allowed = frozenset(block for block in found.blocks if block.driving == i)
+        way = way_round(known, i, found.routes[i], allowed, self.shape)
+        if way is None:
+            return None
+        routes = [*found.routes]
+        routes[i] = way.route
+        blocks = tuple(sorted((*(one for one in found.blocks if one.driving != i), *way.blocks), key=in_order))
+        rivals = tuple(sorted({*found.beside.get(i, ()), *(group[m] for m in stuck if m != n)}))
+        return dataclasses.replace(found, routes=tuple(routes), blocks=blocks, beside={**found.beside, i: rivals})
+
+    def bays(self, found: Rerouting, group: Sequence[int], n: int) -> Iterator[tuple[int, Point]]:
+        """Bays for a robot, each with its position in the group; those that cost least as the crow flies first."""
+        i = group[n]
+        robot = self.problem.robots[i]
+        if robot.path or robot.via:
+            return
+        free = self.free(found, group, i)
+        cost = np.hypot(*(free - robot.start).T) + np.hypot(*(free - robot.goal).T)
+        taken: list[Point] = []
+        for k in np.argsort(cost, kind="stable").tolist():
+            x, y = free[k].tolist()
+            if all(math.dist((x, y), other) >= _APART for other in taken):
+                taken.append((x, y))
+                yield n, (x, y)
+            if len(taken) == _MOST_BAYS:
+                return
+
+    def free(self, found: Rerouting, group: Sequence[int], i: int) -> Array:
+        """Places (m, 2) [m] where robot i is in nobody's way: neither where others rest nor on paths of its group."""
+        workspace, own = self.problem.workspace, self.problem.robots[i].footprint.radius
+        xmin, ymin, xmax, ymax = workspace.bounds
+        rim = own + workspace.clearance + _ROOM
+        x, y = np.arange(xmin + rim, xmax - rim, _GRID), np.arange(ymin + rim, ymax - rim, _GRID)
+        at = np.stack(np.meshgrid(x, y), axis=2).reshape(-1, 2)
+        near, _, _ = too_near(self.problem.obstacles, at, np.full(len(at), rim))
+        at = np.delete(at, np.unique(near), axis=0)
+        for k in group:
+            if k != i:
+                path = found.routes[k].path
+                s = np.linspace(0.0, path.length, 2 + math.ceil(path.length / _SAMPLE))
+                at = _beyond(at, path.point(s), rim + self.problem.robots[k].footprint.radius)
+        others = [m for m in range(len(self.known.places)) if m // 2 != i]
+        for m in others:
+            at = _beyond(at, self.known.places[m : m + 1], rim - workspace.clearance + float(self.known.reaches[m]))
+        return at
+
+
+def _in_the_way(lattice: Lattice, stuck: Sequence[int]) -> list[int]:
+    """Robots that are stuck, those first without which the others come home or farthest."""
+
+    def left(n: int) -> float:
+        near = [[m for m in some if m != n] if k != n else [] for k, some in enumerate(lattice.neighbours)]
+        return moves_home(dataclasses.replace(lattice, neighbours=near), _FEW_STATES).left
+
+    return sorted(stuck, key=left)
+
+
+def _beyond(at: Array, places: Array, distance: float) -> Array:
+    """Those of some places (m, 2) that are at least so far [m] from others (n, 2)."""
+    gap = at[:, None] - places[None]
+    return np.asarray(at[(np.hypot(gap[..., 0], gap[..., 1]) >= distance).all(axis=1)])

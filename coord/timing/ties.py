@@ -1,0 +1,49 @@
+"""Equally early: other profiles with which a robot arrives no later, but slows down elsewhere, or elsewhen.
+
+For the robot itself it is the same whether it waits at its start or rolls and slows down on the way. For others it
+is not: where it waits it stands in nobody's way for long, and where it rolls it may have passed before they come.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+from coord.alone.check import keeps_limits
+from coord.timing.delay import after_contact, before_contact
+from coord.timing.ego import Ego
+from coord.timing.meeting import Meeting, first_violated
+from coord.timing.passing import Timing
+from coord.timing.splice import spliced
+from coord.tolerances import OPTIMAL
+
+#: [s] With so much less delay, the window that a delay is for is violated.
+_A_LITTLE = 1e-3
+
+
+def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Timing]:
+    """Other profiles that are clear of all meetings and arrive as early, give or take the share OPTIMAL.
+
+    Each slows down once, at another time; empty where the robot neither waits at its start nor slows down like that.
+    """
+    if timing.how not in ("start delay", "splice"):
+        return []
+    delay = timing.profile.arrival - ego.alone.arrival
+    in_the_way = _violated(meetings, ego, delay)
+    reasons = [index for index in _violated(meetings, ego, delay - _A_LITTLE) if index not in in_the_way]
+    afters = [dataclasses.replace(after_contact(ego.alone, meetings[k].window), delay=delay) for k in reasons]
+    befores = [before_contact(ego.alone, meetings[k].window) for k in in_the_way]
+    latest = timing.profile.arrival * (1 + OPTIMAL)
+    return [
+        dataclasses.replace(timing, profile=profile, how="splice")
+        for profile in spliced(ego, afters, befores)
+        if profile.arrival <= latest
+        and first_violated(meetings, profile) is None
+        and keeps_limits(profile, ego.robot.limits, ego.caps)
+    ]
+
+
+def _violated(meetings: list[Meeting], ego: Ego, delay: float) -> list[int]:
+    """All meetings, by index, at which ego runs into another robot with a delay [s]."""
+    delayed = ego.alone.shifted(delay)
+    gaps = ((index, meeting.excess(delayed)) for index, meeting in enumerate(meetings))
+    return [index for index, gap in gaps if gap is not None and not gap.is_clear]
