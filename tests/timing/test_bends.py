@@ -157,3 +157,33 @@ def test_a_lattice_of_motions_through_a_bend_is_never_earlier():
 def slow_in_the_bend(s, v):
     """At most half a metre a second from 3 m to 4 m."""
     return (v <= 0.5 + 1e-9) | (s <= 3.0 + 1e-9) | (s >= 4.0 - 1e-9)
+
+
+def needed_between(one, places):
+    """Least times [s] from each of the arc lengths to each."""
+    alone = time_at(one.relaxed, one.bends.marks)
+    at = time_at(one.relaxed, places)
+    i = np.searchsorted(one.bends.marks, places, side="left")
+    k = np.searchsorted(one.bends.marks, places, side="right") - 1
+    extra = np.where(k[None] > i[:, None], one.bends.between[np.minimum(i, len(alone) - 1)[:, None], k[None]], 0.0)
+    return at[None] - at[:, None] + extra
+
+
+@pytest.mark.parametrize(("seed", "clothoids"), [*((k, False) for k in range(16)), (0, True), (3, True)])
+def test_no_motion_is_quicker_from_any_place_to_any_later_one(seed, clothoids):
+    """The same motions, and every state on them is one with which a robot may come by: 120 places, all pairs."""
+    rng, one = scene(seed, clothoids)
+    if one.bends is None:
+        return
+    places = np.unique(np.append(np.linspace(0.0, one.length, 80), one.bends.marks))
+    least = needed_between(one, places)
+    for motion in some_motions(rng, one):
+        at = time_at(motion, places)
+        later = places[None] > places[:, None]
+        assert np.all((at[None] - at[:, None] >= least - 1e-6)[later])
+
+
+def test_leaving_a_sharp_bend_costs_more_than_without_jerk():
+    """From 1 m before a bend at 0.25 m/s to 1 m behind it: on most ways some tenths of a second more."""
+    extra = [one.bends.between.max() for _, one in map(scene, range(16)) if one.bends is not None]
+    assert np.median(extra) > 0.1
