@@ -11,7 +11,7 @@ import numpy as np
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import Chords, chords
 from coord.conflicts.core import conflict_core
-from coord.conflicts.region import conflict_regions
+from coord.conflicts.region import ConflictRegion, conflict_regions
 from coord.coordination.blocking import Block, find_blocks, reaches_of
 from coord.model.arrays import Array
 from coord.model.footprint import Footprint
@@ -98,14 +98,27 @@ def meetings_of(
     profile : of the other.
     blocked : (resting, driving, "start" or "goal") for every arc of the blocking graph between the two, and any more.
     """
-    (i, shape, own), (k, beside, chain) = ego, other
-    ends = Ends(
+    ends = ends_of(ego[0], other[0], blocked)
+    return [
+        Meeting(region, other[0], profile, ends, float(ego[2].s[-1]))
+        for region in regions_of(ego, other, ends, clearance)
+    ]
+
+
+def ends_of(i: int, k: int, blocked: Set[tuple[int, int, str]]) -> Ends:
+    """Where robots i and k rest in each other's way."""
+    return Ends(
         start_free=(i, k, "start") not in blocked,
         goal_free=(i, k, "goal") not in blocked,
         other_waits=(k, i, "start") in blocked,
         other_parks=(k, i, "goal") in blocked,
     )
-    regions = conflict_regions(
+
+
+def regions_of(ego: Lane, other: Lane, ends: Ends, clearance: float) -> tuple[ConflictRegion, ...]:
+    """Where two robots meet, whatever their profiles."""
+    (_, shape, own), (_, beside, chain) = ego, other
+    return conflict_regions(
         own,
         chain,
         shape.margin + beside.margin + clearance,
@@ -113,7 +126,6 @@ def meetings_of(
         start_free=ends.start_free,
         goal_free=ends.goal_free,
     )
-    return [Meeting(region, k, profile, ends, float(own.s[-1])) for region in regions]
 
 
 def _box(path: Path, reach: float) -> tuple[float, float, float, float]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from coord.conflicts.candidates import candidate_pairs
 from coord.conflicts.chords import Chords, chords
+from coord.conflicts.region import ConflictRegion
 from coord.coordination.blocking import Block
-from coord.coordination.company import meetings_of
+from coord.coordination.company import ends_of, regions_of
 from coord.model.result import BlockingArc
 from coord.timing.ego import Ego
 from coord.timing.meeting import Meeting
@@ -20,7 +21,7 @@ class Scene:
     """Robots on their paths, who is near whom, and who blocks whom.
 
     ``neighbours`` : for each robot the indices of those it might meet; ``blocked`` : (resting, driving, "start"
-    or "goal") for every arc of the blocking graph.
+    or "goal") for every arc of the blocking graph; ``regions`` : of pairs that are looked at more than once.
     """
 
     egos: Sequence[Ego]
@@ -28,13 +29,22 @@ class Scene:
     neighbours: Sequence[Sequence[int]]
     blocked: frozenset[tuple[int, int, str]]
     clearance: float
+    regions: dict[tuple[int, int], tuple[ConflictRegion, ...]] = field(default_factory=dict)
 
-    def meetings(self, i: int, others: Sequence[int], timings: Mapping[int, Timing]) -> list[Meeting]:
-        """All meetings of robot i with others that have a profile."""
-        ego, found = (i, self.egos[i].robot.footprint, self.chords[i]), []
+    def meetings(
+        self, i: int, others: Sequence[int], timings: Mapping[int, Timing], *, remember: bool = False
+    ) -> list[Meeting]:
+        """All meetings of robot i with others that have a profile; ``remember`` where to meet, for the next time."""
+        length, found = float(self.chords[i].s[-1]), []
         for k in others:
-            other = (k, self.egos[k].robot.footprint, self.chords[k])
-            found += meetings_of(ego, other, timings[k].profile, self.blocked, self.clearance)
+            ends = ends_of(i, k, self.blocked)
+            regions = self.regions.get((i, k))
+            if regions is None:
+                ego, other = ((n, self.egos[n].robot.footprint, self.chords[n]) for n in (i, k))
+                regions = regions_of(ego, other, ends, self.clearance)
+            if remember:
+                self.regions[i, k] = regions
+            found += [Meeting(region, k, timings[k].profile, ends, length) for region in regions]
         return found
 
 

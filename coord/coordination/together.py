@@ -145,8 +145,8 @@ def _timed(
     if key not in search.memory:
         search.left -= 1
         away = [meeting for k, deadline in waits for meeting in _kept_away(search.scene, i, k, deadline)]
-        meetings = search.scene.meetings(i, near, timings) + away
-        search.memory[key] = search.solve(search.scene.egos[i], meetings, hurried=len(group) > 2)
+        meetings = search.scene.meetings(i, near, timings, remember=True) + away
+        search.memory[key] = search.solve(search.scene.egos[i], meetings, hurried=True)
     return search.memory[key]
 
 

@@ -97,7 +97,7 @@ def improved(
                 continue
             check_time()
             most, tried[i] = most - 1, against
-            one = solve(scene.egos[i], scene.meetings(i, near, rest), hurried=True)
+            one = solve(scene.egos[i], scene.meetings(i, near, rest, remember=True), hurried=True)
             if one is not None and one.profile.arrival < now[i].profile.arrival:
                 now[i] = one
         if sum_of(now) > began * (1 - _LITTLE):
@@ -105,7 +105,9 @@ def improved(
     for i in by_arrival(now) if len(now) <= _SMALL else []:
         check_time()
         rest = {**timings, **now}
-        one = solve(scene.egos[i], scene.meetings(i, [k for k in scene.neighbours[i] if k in rest], rest))
+        one = solve(
+            scene.egos[i], scene.meetings(i, [k for k in scene.neighbours[i] if k in rest], rest, remember=True)
+        )
         if one is not None and one.profile.arrival <= now[i].profile.arrival * _CALM:
             now[i] = one
     return told(scene, now, timings)
@@ -126,7 +128,7 @@ def told(scene: Scene, found: Mapping[int, Timing], timings: Mapping[int, Timing
     known: dict[int, Timing] = {}
     for i in by_arrival(found):
         rest = {**timings, **known}
-        meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in rest], rest)
+        meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in rest], rest, remember=True)
         after = {one.other for one in meetings if one.passes_after(found[i].profile)}
         before = {one.other for one in meetings} - after
         known[i] = dataclasses.replace(
