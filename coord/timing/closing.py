@@ -121,7 +121,7 @@ class _Chase:
 
 def close_gap(
     ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]], near: Sequence[int],
-    best: VelocityProfile, bound: float, *, most: int, enough: float, decided: bool,
+    best: VelocityProfile, bound: float, *, most: int, enough: float, decided: bool, is_real: bool,
 ) -> Closing:  # fmt: skip
     """Raise a certified bound [s] and improve on a profile until they are as good as equal.
 
@@ -132,6 +132,7 @@ def close_gap(
     most : so many relaxations may be solved.
     enough : gaps below this share of the arrival are left; CLOSED or less asks for a finer relaxation, too.
     decided : whether it is known already that no other choice of before and after is better.
+    is_real : whether the profile can be driven, or only stands for one that is sought: then the bound is of no use.
     """
     chase = _Chase(ego, meetings, forbidden, best, bound)
     chase.most, chase.fine = most, enough <= CLOSED
@@ -143,7 +144,8 @@ def close_gap(
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
-    _halving(chase, enough)
+    if is_real or chase.best is not best:
+        _halving(chase, enough)
     decided = decided or chase.is_closed(CLOSED)
     return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided, chase.programs)
 

@@ -152,8 +152,9 @@ def time_robot(
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
             closing = close_gap(
-                ego, meetings, search.forbidden, near, search.best, bound, most=most, enough=enough, decided=not is_open
-            )
+                ego, meetings, search.forbidden, near, search.best, bound,
+                most=most, enough=enough, decided=not is_open, is_real=search.how != _NONE,
+            )  # fmt: skip
             bound, is_open = closing.bound, not closing.is_decided
             if closing.is_new:
                 search.take(closing.profile, "program")
