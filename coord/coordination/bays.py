@@ -29,8 +29,8 @@ _GRID, _ROOM = 0.25, 0.05
 #: Robots of one group that go into bays; bays tried before one is taken; those of one robot, at least so far apart [m].
 _MOST_ROBOTS, _MOST_TRIES, _MOST_BAYS, _APART = 6, 20, 5, 1.5
 
-#: Bays tried in all groups, one in a group counted once more for so many robots; and states looked at for each.
-_MOST_IN_ALL, _LARGE, _FEW_STATES = 80, 8, 40
+#: Looks at a robot that the search for bays may take in all groups; a path is as dear as so many; and states for each.
+_MOST_LOOKS, _PATH, _FEW_STATES = 250_000, 2000, 40
 
 #: [m] Places of a path are looked at so far apart.
 _SAMPLE = 0.1
@@ -41,7 +41,7 @@ _SKETCH = "taut"
 
 def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callable[[], None]) -> Rerouting:
     """Paths on which groups can leave together, as far as bays help; others are left as they are."""
-    search = _Search(problem, rests(problem), shape, check_time, _MOST_IN_ALL)
+    search = _Search(problem, rests(problem), shape, check_time, _MOST_LOOKS)
     for group in found.together:
         if len(group) > 2:
             found = search.untied(found, group)
@@ -50,7 +50,7 @@ def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callab
 
 @dataclasses.dataclass(slots=True, eq=False)
 class _Search:
-    """What all groups share; ``left`` : how many bays may still be tried."""
+    """What all groups share; ``left`` : how many looks at a robot may still be taken."""
 
     problem: Problem
     known: Rests
@@ -82,17 +82,17 @@ class _Search:
     ) -> tuple[Rerouting, Lattice, Outcome, tuple[int, Point]] | None:
         """The same with one more robot on a way through a bay, the first that brings all home or the most forward."""
         best = None
-        options = (one for n in _in_the_way(lattice, outcome.stuck) for one in self.bays(found, group, n))
+        options = (one for n in self.in_the_way(lattice, outcome.stuck) for one in self.bays(found, group, n))
         for n, place in islice(options, _MOST_TRIES):
             if self.left <= 0:
                 break
             self.check_time()
-            self.left -= 1 + len(group) // _LARGE  # of large groups each look takes longer
+            self.left -= _PATH
             changed = self.through(found, group, n, place, outcome.stuck, _SKETCH)
             other = None if changed is None else with_other_path(lattice, self.floor(changed), group, n)
             if changed is None or other is None:
                 continue
-            after = moves_home(other, _FEW_STATES)
+            after = self.looked(other)
             if after.moves is not None:
                 return changed, other, after, (n, place)
             if best is None or after.left < best[2].left:
@@ -125,6 +125,21 @@ class _Search:
         blocks = tuple(sorted((*(one for one in found.blocks if one.driving != i), *way.blocks), key=in_order))
         rivals = tuple(sorted({*found.beside.get(i, ()), *(group[m] for m in stuck if m != n)}))
         return dataclasses.replace(found, routes=tuple(routes), blocks=blocks, beside={**found.beside, i: rivals})
+
+    def looked(self, lattice: Lattice) -> Outcome:
+        """A short search for moves home, which is counted."""
+        outcome = moves_home(lattice, _FEW_STATES)
+        self.left -= outcome.looks
+        return outcome
+
+    def in_the_way(self, lattice: Lattice, stuck: Sequence[int]) -> list[int]:
+        """Robots that are stuck, those first without which the others come home or farthest."""
+
+        def left(n: int) -> float:
+            near = [[m for m in some if m != n] if k != n else [] for k, some in enumerate(lattice.neighbours)]
+            return self.looked(dataclasses.replace(lattice, neighbours=near)).left if self.left > 0 else math.inf
+
+        return sorted(stuck, key=left)
 
     def bays(self, found: Rerouting, group: Sequence[int], n: int) -> Iterator[tuple[int, Point]]:
         """Bays for a robot, each with its position in the group; those that cost least as the crow flies first."""
@@ -161,16 +176,6 @@ class _Search:
         for m in others:
             at = _beyond(at, self.known.places[m : m + 1], rim - workspace.clearance + float(self.known.reaches[m]))
         return at
-
-
-def _in_the_way(lattice: Lattice, stuck: Sequence[int]) -> list[int]:
-    """Robots that are stuck, those first without which the others come home or farthest."""
-
-    def left(n: int) -> float:
-        near = [[m for m in some if m != n] if k != n else [] for k, some in enumerate(lattice.neighbours)]
-        return moves_home(dataclasses.replace(lattice, neighbours=near), _FEW_STATES).left
-
-    return sorted(stuck, key=left)
 
 
 def _beyond(at: Array, places: Array, distance: float) -> Array:

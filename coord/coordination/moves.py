@@ -8,7 +8,7 @@ could not both come home from is never tried.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Final, NamedTuple, TypeAlias
@@ -20,6 +20,9 @@ _State: TypeAlias = tuple[int, ...]
 
 #: States from which it is tried who goes first, where nothing else is said.
 MOST_STATES: Final = 300
+
+#: Choices from a state, about as many as eight robots have; of more robots fewer states are looked at.
+_CHOICES: Final = 40
 
 #: Of the places that a robot could move on to, one in so many is looked at.
 _STRIDE: Final = 3
@@ -37,13 +40,15 @@ class Outcome(NamedTuple):
     """What a search found.
 
     ``moves`` : after them all are home; None where none were found. ``is_whole`` : whether all that there is in the
-    lattice was looked at; ``stuck`` : the robots not home in the state with the least ``left`` to drive [m].
+    lattice was looked at; ``stuck`` : the robots not home in the state with the least ``left`` to drive [m];
+    ``looks`` : how often a robot was looked at, which takes about as long each time.
     """
 
     moves: list[Move] | None
     is_whole: bool
     stuck: tuple[int, ...]
     left: float
+    looks: int
 
 
 @dataclass(slots=True, eq=False)
@@ -65,25 +70,28 @@ class _Search:
 def moves_home(lattice: Lattice, most: int) -> Outcome:
     """Moves after which all robots are at their goals; ``most`` : states from which it is tried who goes first."""
     search, home = _Search(lattice), tuple(len(at) - 1 for at in lattice.places)
-    first, moves = _onward(lattice, tuple(0 for _ in home))
+    first, moves, looks = _onward(lattice, tuple(0 for _ in home), range(len(home)))
     search.came[first] = (None, moves)
     queue = [(_left(lattice, first), 0, first)]
     best = queue[0]
-    pushed = tried = 0
-    while queue and tried < most:
+    pushed = tried = moved = 0
+    while queue and tried < most and moved < most * _CHOICES:
         now = heapq.heappop(queue)
         if now[2] == home:
-            return Outcome(search.moves(now[2]), False, (), 0.0)
+            return Outcome(search.moves(now[2]), False, (), 0.0, looks)
         best = min(best, now)
         tried += 1
         for move in _choices(lattice, now[2]):
-            after, moves = _onward(lattice, _moved(now[2], move))
+            moved += 1
+            beside = (move.robot, *lattice.neighbours[move.robot])
+            after, moves, more = _onward(lattice, _moved(now[2], move), beside)
+            looks += more
             if after not in search.came:
                 search.came[after] = (now[2], [move, *moves])
                 pushed += 1
                 heapq.heappush(queue, (_left(lattice, after), pushed, after))
     stuck = tuple(n for n, (a, end) in enumerate(zip(best[2], home, strict=True)) if a < end)
-    return Outcome(None, not queue, stuck, best[0])
+    return Outcome(None, not queue, stuck, best[0], looks)
 
 
 def _left(lattice: Lattice, state: _State) -> float:
@@ -95,34 +103,37 @@ def _moved(state: _State, move: Move) -> _State:
     return (*state[: move.robot], move.end, *state[move.robot + 1 :])
 
 
-def _onward(lattice: Lattice, state: _State) -> tuple[_State, list[Move]]:
-    """The state after all moves that harm nobody, and these."""
+def _onward(lattice: Lattice, state: _State, waiting: Iterable[int]) -> tuple[_State, list[Move], int]:
+    """The state after all moves that harm nobody, these, and the looks; ``waiting`` : who may have such a move."""
     moves: list[Move] = []
-    waiting = list(range(len(state)))
-    while waiting:
-        i = waiting.pop(0)
+    queue, looks = list(waiting), 0
+    while queue:
+        i, looks = queue.pop(0), looks + 1
         move = _harmless(lattice, state, i)
         if move is not None:
             state = _moved(state, move)
             moves.append(move)
-            waiting += [k for k in lattice.neighbours[i] if k not in waiting]
-    return state, moves
+            queue += [k for k in lattice.neighbours[i] if k not in queue]
+    return state, moves, looks
 
 
 def _harmless(lattice: Lattice, state: _State, i: int) -> Move | None:
     """A far move of a robot to where it stands in nobody's way more than before."""
-    near = list(lattice.neighbours[i])
+    if state[i] == len(lattice.places[i]) - 1:
+        return None
+    near = []  # for each other: what a place forbids it, and which of its moves are still to come and were free so far
+    for k in lattice.neighbours[i]:
+        if state[k] < len(lattice.places[k]) - 1:
+            stopped = lattice.stopped[k, i]
+            near.append((stopped, ~stopped[state[i]] >> state[k] << state[k]))
     for end in islice(_ends(lattice, state, i), 0, None, _STRIDE):
-        worse = next((m for m, k in enumerate(near) if _is_worse(lattice, state, i, k, end)), None)
-        if worse is None:
+        for m, (stopped, free) in enumerate(near):
+            if stopped[end] & free:
+                near.insert(0, near.pop(m))  # who is hindered here is hindered at the next place, too, as a rule
+                break
+        else:
             return Move(i, state[i], end)
-        near.insert(0, near.pop(worse))  # who is hindered here is hindered at the next place, too, as a rule
     return None
-
-
-def _is_worse(lattice: Lattice, state: _State, i: int, k: int, end: int) -> bool:
-    stopped = lattice.stopped[k, i]
-    return (stopped[end] & ~stopped[state[i]]) >> state[k] != 0
 
 
 def _ends(lattice: Lattice, state: _State, i: int) -> Iterator[int]:
