@@ -8,7 +8,7 @@ instead of tangents.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -17,14 +17,24 @@ from coord.conflicts.blocks import Blocks, corner_nodes, slices
 from coord.conflicts.discs import stadium_extent
 from coord.conflicts.region import ConflictRegion, cell_nodes
 from coord.conflicts.rounded import rounded_extent
-from coord.model.arrays import Array, frozen
+from coord.model.arrays import Array
 from coord.tolerances import SAME_PLACE
 
 #: [m] Distances are lowered by this, so that what rounding makes of a touch is no proof.
 _MARGIN = 1e-7
 
-#: At both nodes of a cell (2,) the ends [m] of an interval.
-_Interval = tuple[Array, Array]
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Intervals:
+    """Forbidden intervals of cells: the low and high ends (n, 2) [m] at both nodes of the cells (n,)."""
+
+    low: Array
+    high: Array
+    cell: npt.NDArray[np.intp]
+
+    def of(self, some: npt.NDArray[np.intp]) -> _Intervals:
+        """Some of them."""
+        return _Intervals(self.low[some], self.high[some], self.cell[some])
 
 
 def inner_regions(region: ConflictRegion, length: float) -> tuple[ConflictRegion, ...]:
@@ -49,8 +59,8 @@ def inner_regions(region: ConflictRegion, length: float) -> tuple[ConflictRegion
     member, cell = np.nonzero((extent[:, :1] <= middle[None]) & (middle[None] <= extent[:, 1:]))
     ends = [_clipped(blocks, member, nodes[cell + side]) for side in (0, 1)]
     low, high = (np.stack([end[k] for end in ends], axis=1) for k in (0, 1))
-    chains = _chains([_joined(low[cell == k], high[cell == k]) for k in range(len(middle))], length)
-    return tuple(_part(nodes, chain) for chain in chains)
+    found = _inside(_joined(low, high, cell), length)
+    return tuple(_part(nodes, found.of(chain)) for chain in _chains(found, length))
 
 
 def _shrunk(blocks: Blocks) -> Blocks:
@@ -76,46 +86,58 @@ def _clipped(blocks: Blocks, member: npt.NDArray[np.intp], sigma: Array) -> tupl
     return low, np.maximum(low, high)
 
 
-def _joined(low: Array, high: Array) -> list[_Interval]:
-    """Intervals (n, 2) of one cell, those that touch at both nodes made one."""
-    found: list[_Interval] = []
-    for k in np.lexsort((low[:, 1], low[:, 0])).tolist():
-        if found and np.all(low[k] <= found[-1][1] + SAME_PLACE):
-            found[-1] = (np.minimum(found[-1][0], low[k]), np.maximum(found[-1][1], high[k]))
-        else:
-            found.append((low[k], high[k]))
-    return found
+def _joined(low: Array, high: Array, cell: npt.NDArray[np.intp]) -> _Intervals:
+    """Intervals (n, 2) of cells (n,), those of one cell that touch at both nodes made one."""
+    order = np.lexsort((low[:, 1], low[:, 0], cell))
+    low, high, cell = low[order], high[order], cell[order]
+    first, count = _runs(cell)
+    begins, top = np.zeros(len(cell), bool), high[first]
+    begins[first] = True
+    for rank in range(1, int(count.max(initial=0))):
+        more = np.flatnonzero(count > rank)
+        k = first[more] + rank
+        touches = np.asarray((low[k] <= top[more] + SAME_PLACE).all(axis=1))
+        begins[k] = ~touches
+        top[more] = np.where(touches[:, None], np.maximum(top[more], high[k]), high[k])
+    first = np.flatnonzero(begins)
+    return _Intervals(np.minimum.reduceat(low, first), np.maximum.reduceat(high, first), cell[first])
 
 
-def _chains(cells: list[list[_Interval]], length: float) -> list[list[tuple[int, _Interval]]]:
+def _inside(found: _Intervals, length: float) -> _Intervals:
+    """Those that are more than a point of ego's way at either node."""
+    width = np.minimum(found.high, length) - np.maximum(found.low, 0.0)
+    return found.of(np.flatnonzero(width.max(axis=1) > 0))
+
+
+def _chains(found: _Intervals, length: float) -> list[npt.NDArray[np.intp]]:
     """One interval a cell, the widest, or the one that goes on from the cell before; cut where none goes on."""
-    chains: list[list[tuple[int, _Interval]]] = []
-    for k, intervals in enumerate(cells):
-        inside = [(low, high) for low, high in intervals if _overlap(low, high, 0.0, length).max() > 0]
-        if not inside:
-            continue
-        before = chains[-1][-1] if chains and chains[-1][-1][0] == k - 1 else None
-        following = [one for one in inside if before is not None and _goes_on(before[1], one, length)]
-        widest = max(following or inside, key=lambda one: float((one[1] - one[0]).sum()))
-        if following:
-            chains[-1].append((k, widest))
-        else:
-            chains.append([(k, widest)])
-    return chains
+    if not len(found.cell):
+        return []
+    width = (found.high - found.low).sum(axis=1)
+    first, count = _runs(found.cell)
+    picked = first.copy()
+    for k in np.flatnonzero(count > 1).tolist():
+        some = first[k] + np.arange(count[k])
+        following = some[_goes_on(found, picked[k - 1], some, length)] if k else some[:0]
+        some = following if len(following) else some
+        picked[k] = some[np.argmax(width[some])]
+    return np.split(picked, np.flatnonzero(~_goes_on(found, picked[:-1], picked[1:], length)) + 1)
 
 
-def _goes_on(before: _Interval, after: _Interval, length: float) -> bool:
-    """Whether two intervals of neighbouring cells have more than a point of ego's way in common at the node between."""
-    low = max(before[0][1], after[0][0], 0.0)
-    return bool(min(before[1][1], after[1][0], length) > low)
+def _runs(cell: npt.NDArray[np.intp]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Where the intervals of each cell begin, and how many they are; the cells are in order."""
+    first = np.flatnonzero(np.append(True, np.diff(cell) > 0)[: len(cell)])
+    return first, np.diff(np.append(first, len(cell)))
 
 
-def _overlap(low: Array, high: Array, start: float, end: float) -> Array:
-    return np.asarray(np.minimum(high, end) - np.maximum(low, start))
+def _goes_on(
+    found: _Intervals, before: npt.NDArray[np.intp], after: npt.NDArray[np.intp], length: float
+) -> npt.NDArray[np.bool_]:
+    """Whether intervals of neighbouring cells have more than a point of ego's way in common at the node between."""
+    low = np.maximum(np.maximum(found.low[before, 1], found.low[after, 0]), 0.0)
+    high = np.minimum(np.minimum(found.high[before, 1], found.high[after, 0]), length)
+    return np.asarray((high > low) & (found.cell[after] == found.cell[before] + 1))
 
 
-def _part(nodes: Array, chain: list[tuple[int, _Interval]]) -> ConflictRegion:
-    cells = [k for k, _ in chain]
-    at = np.append(nodes[cells], nodes[cells[-1] + 1])
-    lows, highs = ([interval[end] for _, interval in chain] for end in (0, 1))
-    return ConflictRegion(frozen(at), frozen(lows), frozen(highs))
+def _part(nodes: Array, chain: _Intervals) -> ConflictRegion:
+    return ConflictRegion(nodes[np.append(chain.cell, chain.cell[-1] + 1)], chain.low, chain.high)

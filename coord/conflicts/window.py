@@ -93,8 +93,8 @@ def _cut(times: Array, profile: VelocityProfile) -> Array:
     h = np.diff(edges)
     bend = np.abs(profile.state(np.concatenate([edges[:-1], edges[1:]]))[:, 2]).reshape(2, -1).max(axis=0)
     count = np.maximum(1, np.ceil(h * np.sqrt(bend / (8 * _BEND)))).astype(int)
-    parts = [np.linspace(edges[k], edges[k + 1], n, endpoint=False) for k, n in enumerate(count.tolist())]
-    return np.concatenate([*parts, edges[-1:]])
+    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.append(within * np.repeat(h / count, count) + np.repeat(edges[:-1], count), edges[-1])
 
 
 def _lines_over_time(

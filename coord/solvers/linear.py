@@ -151,5 +151,5 @@ def _program(n: int) -> tuple[Any, Any, Any, npt.NDArray[np.intp]]:
     starts = np.searchsorted(columns[order], np.arange(4 * n + 4))
     a = casadi.Sparsity(6 * n, 4 * n + 3, starts.tolist(), rows[order].tolist())
     h = casadi.Sparsity.diag(4 * n + 3)
-    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 60, "verbose": False}}
+    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 45, "verbose": False}}
     return casadi.conic("motion", "piqp", {"h": h, "a": a}, options), a, h, order

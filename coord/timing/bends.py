@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coord.alone.inverse import time_at
 from coord.model.arrays import Array, frozen
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
+from coord.timing.clock import clock
 from coord.timing.quickest import ramps
 from coord.tolerances import SAME_PLACE
 
@@ -110,7 +110,7 @@ def passages(path: Path, limits: Limits, relaxed: VelocityProfile) -> Passages |
     places = np.concatenate([link.places for link in links])
     early = np.concatenate([(e[:, None] + link.since).min(axis=0) for e, link in zip(reached, links, strict=False)])
     still = np.concatenate([(g[:, None] + link.until).min(axis=0) for g, link in zip(needed[1:], links, strict=True)])
-    alone = time_at(relaxed, places)
+    alone = clock(relaxed, places)
     late = np.maximum.accumulate(early - alone)
     long = np.maximum.accumulate((still - (relaxed.arrival - alone))[::-1])[::-1]
     total = max(float(reached[-1][0]), relaxed.arrival)
@@ -125,7 +125,7 @@ def _between(links: Sequence[_Link], relaxed: VelocityProfile) -> tuple[Array, A
     picked = [_graded(len(link.places)) for link in links]
     first = np.cumsum([0, *(len(some) for some in picked)])
     marks = np.concatenate([link.places[some] for link, some in zip(links, picked, strict=True)])
-    alone = time_at(relaxed, marks)
+    alone = clock(relaxed, marks)
     extra = np.zeros((len(marks), len(marks)))
     for m, link in enumerate(links):
         rows = slice(first[m], first[m + 1])
@@ -181,7 +181,7 @@ def _nodes(ends: Array, caps: Array, limits: Limits, relaxed: VelocityProfile) -
             s = float(borders[k])
             if not nodes[-1].s + SAME_PLACE < s < length - SAME_PLACE:
                 continue
-            at = float(time_at(relaxed, s)[0])
+            at = float(clock(relaxed, np.array([s]))[0])
             reachable = float(relaxed.state([at])[0, 1]) * (1 + 1e-9) + 1e-6
             speed = min(float(min(caps[k - 1], caps[k])), reachable)
             nodes.append(_node(s, speed, limits))

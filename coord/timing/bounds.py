@@ -22,6 +22,7 @@ from coord.conflicts.window import Window
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.timing.bends import Passages
+from coord.timing.clock import clock
 from coord.timing.ego import Ego, earliest, still_needed
 from coord.timing.meeting import Meeting
 from coord.timing.reach import Part, part
@@ -65,6 +66,9 @@ def could_hold_up(ego: Ego, meeting: Meeting, arrival: float) -> bool:
     _, last, low, _ = meeting.box
     return bool(last + still_needed(ego, np.array([low]))[0] > arrival)
 
+
+#: Whether ego can pass after the one and before the other of two claims, by their places in a sequence.
+Fits: TypeAlias = dict[tuple[int, int], bool]
 
 #: Moments (m,) [s], least and largest forbidden arc length (m,), (m,) [m] then, and whether the last hold for ever.
 Forbidden: TypeAlias = tuple[Array, Array, Array, bool]
@@ -115,8 +119,8 @@ def _claim(ego: Ego, times: Array, low: Array, high: Array, lasts: bool) -> Clai
     is_late = (earliest(ego, past) > times) & (high > 0)
     can_precede = float(high.max()) <= length + SAME_PLACE and not is_late.any()
     order = np.argsort(times, kind="stable")
-    since = np.where(low < length, time_at(ego.relaxed, at), np.inf)
-    by = np.where(high > 0, time_at(ego.relaxed, past), -np.inf)
+    since = np.where(low < length, clock(ego.relaxed, at), np.inf)
+    by = np.where(high > 0, clock(ego.relaxed, past), -np.inf)
     leaves, since = times[order], since[order]
     return Claim(after, can_precede, leaves, since, times, by, _tight(ego, leaves, since, times, by))
 
@@ -155,7 +159,7 @@ class Tight:
 def _tight(ego: Ego, leaves: Array, since: Array, comes: Array, by: Array) -> Tight | None:
     if ego.bends is None:
         return None
-    marks = time_at(ego.relaxed, ego.bends.marks)
+    marks = clock(ego.relaxed, ego.bends.marks)
     after = np.flatnonzero(np.isfinite(leaves) & (since < marks[-1]))
     before = np.flatnonzero(np.isfinite(comes) & (by > 0))
     i = np.searchsorted(marks, since[after], side="left")
@@ -182,16 +186,25 @@ def _go_through_bends(bends: Passages, after: Tight | None, before: Tight | None
     return not bool(np.any(comes_later & (spare < needed)))
 
 
-def least_arrival(ego: Ego, claims: Sequence[Claim], enough: float, ahead_of: Claim | None = None) -> float:
+def least_arrival(
+    ego: Ego, claims: Sequence[Claim], enough: float, ahead_of: Claim | None = None, known: Fits | None = None
+) -> float:
     """The least arrival [s] over all combinations of before and after, as far as the claims tell; at most ``enough``.
 
-    ``ahead_of`` : one of the claims, which is passed before; it must be one that costs something when passed after.
+    Parameters
+    ----------
+    ahead_of : one of the claims, which is passed before; it must be one that costs something when passed after.
+    known : for pairs of these claims, by their places, what ``are_compatible`` says; what is asked is added.
 
     Best first over combinations: a claim whose one side is impossible is settled; else the claim that costs most
     when passed after is tried on both sides.
     """
-    costly = sorted((claim for claim in claims if claim.after > ego.solo_bound), key=lambda claim: -claim.after)
-    fits = [[claim is other or are_compatible(ego, claim, other) for other in costly] for claim in costly]
+    known = {} if known is None else known
+    places = sorted((k for k in range(len(claims)) if claims[k].after > ego.solo_bound), key=lambda k: -claims[k].after)
+    for a, b in itertools.product(places, places):
+        if (a, b) not in known:
+            known[a, b] = a == b or are_compatible(ego, claims[a], claims[b])
+    costly, fits = [claims[k] for k in places], [[known[a, b] for b in places] for a in places]
     chosen = {k: False for k, claim in enumerate(costly) if claim is ahead_of}
     queue: list[tuple[float, int, dict[int, bool]]] = [(ego.solo_bound, 0, chosen)]
     pushed = itertools.count(1)

@@ -6,6 +6,7 @@ a motion might be like that does, and through the tube along that the inner prog
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -27,6 +28,9 @@ CLOSED = 1e-3
 
 #: The first step up from the bound: a share of it, and [s]. Steps then grow by a factor.
 _SHARE, _STEP, _GROWTH = 1e-3, 0.02, 4.0
+
+#: One question on the way up from the bound takes at most this share of all relaxations: a later arrival is easier.
+_A_QUESTION = 0.4
 
 #: [1] As long as a step leaves less than this share of the gap, the next one is no larger.
 _MUCH = 0.8
@@ -85,9 +89,10 @@ class _Chase:
     def is_closed(self, share: float) -> bool:
         return self.bound >= self.best.arrival * (1 - share)
 
-    def asked(self, arrival: float, besides: Mapping[int, bool] | None = None) -> Verdict:
-        """The verdict on an arrival; a no about all motions raises the bound."""
-        verdict = could_arrive(self.ego, self.parts, arrival, self.most - self.programs, besides, fine=self.fine)
+    def asked(self, arrival: float, besides: Mapping[int, bool] | None = None, share: float = 1.0) -> Verdict:
+        """The verdict on an arrival, with a share of all relaxations; a no about all motions raises the bound."""
+        most = min(self.most - self.programs, math.ceil(share * self.most))
+        verdict = could_arrive(self.ego, self.parts, arrival, most, besides, fine=self.fine)
         self.programs += max(verdict.programs, 1)
         if verdict.cannot and besides is None:
             self.bound = max(self.bound, arrival)
@@ -157,7 +162,7 @@ def _from_below(chase: _Chase, enough: float) -> None:
         arrival = chase.bound + step
         if arrival >= chase.best.arrival * (1 - CLOSED):
             return
-        verdict = chase.asked(arrival)
+        verdict = chase.asked(arrival, share=_A_QUESTION)
         gap = chase.best.arrival - chase.bound
         if verdict.cannot or not chase.follow(verdict) or chase.best.arrival - chase.bound > _MUCH * gap:
             step *= _GROWTH

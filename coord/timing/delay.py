@@ -64,15 +64,21 @@ def before_contact(profile: VelocityProfile, window: Window) -> Contact:
     return Contact(delay, contact.time, contact.s)
 
 
-def start_delay(profile: VelocityProfile, meetings: list[Meeting]) -> VelocityProfile | None:
-    """The profile with the least delay at which it is clear of all; None where another never makes way."""
+def start_delay(
+    profile: VelocityProfile, meetings: list[Meeting], contacts: dict[int, Contact] | None = None
+) -> VelocityProfile | None:
+    """The profile with the least delay at which it is clear of all; None where another never makes way.
+
+    ``contacts`` : gets what ``after_contact`` says of the meetings that were looked at, by index.
+    """
+    contacts = {} if contacts is None else contacts
     delay = 0.0
     while True:
         delayed = profile.shifted(delay)
         violated = first_violated(meetings, delayed)
         if violated is None:
             return delayed
-        contact = after_contact(profile, meetings[violated[0]].window)
+        contact = contacts[violated[0]] = after_contact(profile, meetings[violated[0]].window)
         if np.isinf(contact.delay):
             return None
         delay = max(contact.delay, delay + _LEAST_STEP)

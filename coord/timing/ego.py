@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from coord.alone.fastest import fastest, solo_bound
-from coord.alone.inverse import time_at
 from coord.alone.ramp import Ramp, landing, launch
 from coord.alone.relaxed import without_jerk
 from coord.alone.speed_limit import SpeedLimit, speed_limit
@@ -17,6 +16,7 @@ from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Robot
 from coord.timing.bends import Passages, passages
+from coord.timing.clock import clock
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,10 +64,10 @@ def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
 def earliest(one: Ego, s: Array) -> Array:
     """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]."""
     later = 0.0 if one.bends is None else one.bends.later(s)
-    return one.alone.departure + np.maximum(one.launch.time(s), time_at(one.relaxed, s) + later)
+    return one.alone.departure + np.maximum(one.launch.time(s), clock(one.relaxed, s) + later)
 
 
 def still_needed(one: Ego, s: Array) -> Array:
     """The least times (m,) [s] that it still needs from the arc lengths s (m,) [m] to rest at its goal."""
     longer = 0.0 if one.bends is None else one.bends.longer(s)
-    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - time_at(one.relaxed, s) + longer)
+    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - clock(one.relaxed, s) + longer)

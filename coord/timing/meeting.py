@@ -9,8 +9,12 @@ import numpy as np
 from coord.alone.inverse import time_at
 from coord.conflicts.region import ConflictRegion
 from coord.conflicts.window import Window, stay_within, window
+from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.timing.clear import Excess, excess
+
+#: A window is looked at roughly in so many spans of its strips.
+_SPANS = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +42,7 @@ class Meeting:
     length: float
     box: tuple[float, float, float, float] = field(init=False)
     _window: Window | None = field(init=False, default=None)
+    _spans: tuple[Array, Array, Array] | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         first, last = time_at(self.profile, self.region.sigma[[0, -1]]).tolist()
@@ -64,8 +69,21 @@ class Meeting:
 
     def passes_after(self, profile: VelocityProfile) -> bool:
         """Whether a profile that is clear of the other passes after it, not before."""
-        side = self._side(profile)
+        side = self.side(profile)
         return excess(profile, self.window).passes_after if side is None else side
+
+    def side(self, profile: VelocityProfile) -> bool | None:
+        """Whether a rough look shows that a profile passes after (True) or before (False); None where it does not."""
+        if self._spans is None:
+            side = self._side(profile)
+            if side is not None:
+                return side
+            self._spans = _spans(self.window)
+        times, low, high = self._spans
+        s = profile.state(times)[:, 0]
+        if bool((s[1:] <= low).all()):
+            return True
+        return False if bool((s[:-1] >= high).all()) else None
 
     def _side(self, profile: VelocityProfile) -> bool | None:
         """Whether the box alone shows that a profile passes after (True) or before (False); None where it does not."""
@@ -80,13 +98,22 @@ class Meeting:
         return None if self.is_avoided(profile) else excess(profile, self.window)
 
 
+def _spans(window: Window) -> tuple[Array, Array, Array]:
+    """Times (m+1,) [s] between strips of a window, and the least and largest forbidden arc length (m,), (m,) [m]."""
+    edges = np.unique(np.linspace(0, len(window.low), _SPANS + 1).astype(np.intp))
+    low = np.minimum.reduceat(window.low.min(axis=1), edges[:-1])
+    return window.times[edges], low, np.maximum.reduceat(window.high.max(axis=1), edges[:-1])
+
+
 def first_violated(meetings: list[Meeting], profile: VelocityProfile) -> tuple[int, Excess] | None:
     """The meeting, by index, at which a profile first runs into another robot; None where it is clear of all."""
     found: tuple[int, Excess] | None = None
     for index, meeting in enumerate(meetings):
         if found is not None and meeting.box[0] > found[1].time:
             continue
-        gap = meeting.excess(profile)
-        if gap is not None and not gap.is_clear and (found is None or gap.time < found[1].time):
+        if meeting.side(profile) is not None:
+            continue
+        gap = excess(profile, meeting.window)
+        if not gap.is_clear and (found is None or gap.time < found[1].time):
             found = (index, gap)
     return found

@@ -18,9 +18,10 @@ from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.solvers.linear import SIZES
 from coord.solvers.relaxation import Stages, farthest_bound
+from coord.timing.clock import clock
 from coord.timing.ego import Ego
 from coord.timing.grid import Course
-from coord.timing.reach import Cut, Marks, Part, Reach, clock, ranges, reach_by, settled
+from coord.timing.reach import Cut, Marks, Part, Reach, ranges, reach_by, settled
 
 #: [s] About the duration of the cells of the relaxation; and how many there are at least and at most.
 _CELL, _FEWEST, _MOST = 0.3, 48, 160

@@ -18,6 +18,7 @@ from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
 from coord.timing.bounds import (
     Claim,
+    Fits,
     Forbidden,
     are_compatible,
     claims_of,
@@ -30,9 +31,10 @@ from coord.timing.closing import CLOSED, close_gap
 from coord.timing.delay import Contact, after_contact, before_contact, start_delay
 from coord.timing.ego import Ego
 from coord.timing.gentle import gentle
+from coord.timing.grid import Course
 from coord.timing.haste import hasty_course
 from coord.timing.meeting import Meeting, first_violated
-from coord.timing.program import through_tube
+from coord.timing.program import course_of, through_tube
 from coord.timing.splice import spliced
 from coord.timing.tube import Tube, after_bound, before_bound
 from coord.tolerances import OPTIMAL
@@ -81,10 +83,12 @@ class _Search:
     meetings: list[Meeting]
     best: VelocityProfile
     how: str
+    contacts: dict[int, Contact]
     afters: dict[int, Contact] = field(default_factory=dict)
     befores: dict[int, Contact] = field(default_factory=dict)
     claims: dict[int, Claim] = field(default_factory=dict)
     truly: dict[int, list[Forbidden]] = field(default_factory=dict)
+    fits: Fits = field(default_factory=dict)
 
     @property
     def known(self) -> set[int]:
@@ -96,7 +100,8 @@ class _Search:
 
     def after(self, index: int) -> Contact:
         if index not in self.afters:
-            self.afters[index] = after_contact(self.ego.alone, self.window(index))
+            found = self.contacts.get(index)
+            self.afters[index] = after_contact(self.ego.alone, self.window(index)) if found is None else found
         return self.afters[index]
 
     def before(self, index: int) -> Contact:
@@ -108,6 +113,12 @@ class _Search:
         if index not in self.claims:
             self.claims[index] = window_claim(self.ego, self.window(index))
         return self.claims[index]
+
+    def can_be_between(self, after: int, before: int) -> bool:
+        """Whether ego can pass after the one and before the other, as far as their claims tell."""
+        if (after, before) not in self.fits:
+            self.fits[after, before] = are_compatible(self.ego, self.claim(after), self.claim(before))
+        return self.fits[after, before]
 
     def forbidden(self, index: int) -> list[Forbidden]:
         if index not in self.truly:
@@ -141,9 +152,11 @@ def time_robot(
     violated = first_violated(meetings, ego.alone)
     if violated is None:
         return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
-    delayed = start_delay(ego.alone, meetings)
+    contacts: dict[int, Contact] = {}
+    delayed = start_delay(ego.alone, meetings, contacts)
     # where no delay helps, ego has to be gone before somebody comes: then anything is better than a time far away
-    search = _Search(ego, meetings, delayed or _far_away(ego, meetings), _NONE if delayed is None else "start delay")
+    how = _NONE if delayed is None else "start delay"
+    search = _Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts)
     nodes, is_open = _branch_and_bound(search)
     if hurried and search.how != _NONE:
         return _finished(search.best, meetings, search.how, ego.solo_bound, nodes, True)
@@ -174,15 +187,15 @@ def _far_away(ego: Ego, meetings: list[Meeting]) -> VelocityProfile:
 
 def _branch_and_bound(search: _Search) -> tuple[int, bool]:
     """Improve ``search.best``; the number of subproblems looked at, and whether any was left open."""
-    queue: list[tuple[float, int, dict[int, bool]]] = [(search.ego.solo_bound, 0, {})]
+    queue: list[tuple[float, int, dict[int, bool], Course | None]] = [(search.ego.solo_bound, 0, {}, None)]
     nodes = pushed = 0
     undecided = False
     while queue and nodes < MOST_NODES:
-        bound, _, chosen = heapq.heappop(queue)
+        bound, _, chosen, course = heapq.heappop(queue)
         if not _can_beat(bound, search.best):
             return nodes, undecided
         nodes += 1
-        profile, how = _relaxed(search, chosen, bound)
+        profile, how = _relaxed(search, chosen, bound, course)
         if profile is None:
             undecided = True
             continue
@@ -198,12 +211,14 @@ def _branch_and_bound(search: _Search) -> tuple[int, bool]:
         if index in chosen:  # a bound of the tube was missed by rounding
             undecided = True
             continue
+        is_bent = how == "program" and not search.ego.caps.is_constant
+        course = course_of(profile, search.ego.alone.departure) if is_bent else None
         for passes_after in (True, False):
             choice = chosen | {index: passes_after}
             lower = max(bound, _bound(search, choice))
             if _can_beat(lower, search.best):
                 pushed += 1
-                heapq.heappush(queue, (lower, pushed, choice))
+                heapq.heappush(queue, (lower, pushed, choice, course))
     return nodes, undecided or bool(queue)
 
 
@@ -227,13 +242,15 @@ def _bound(search: _Search, chosen: dict[int, bool]) -> float:
             return np.inf
     for a in (index for index, passes_after in chosen.items() if passes_after):
         for b in (index for index, passes_after in chosen.items() if not passes_after):
-            if not are_compatible(search.ego, claims[a], claims[b]):
+            if not search.can_be_between(a, b):
                 return np.inf
     return bound
 
 
-def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[VelocityProfile | None, str]:
-    """A quick profile that keeps the choices made, whatever it does elsewhere."""
+def _relaxed(
+    search: _Search, chosen: dict[int, bool], bound: float, near: Course | None
+) -> tuple[VelocityProfile | None, str]:
+    """A quick profile that keeps the choices made, whatever it does elsewhere; ``near``: one with a choice less."""
     ego = search.ego
     afters = [search.after(index) for index, passes_after in chosen.items() if passes_after]
     befores = [search.before(index) for index, passes_after in chosen.items() if not passes_after]
@@ -250,7 +267,8 @@ def _relaxed(search: _Search, chosen: dict[int, bool], bound: float) -> tuple[Ve
     course = None if ego.caps.is_constant else hasty_course(ego, tube)
     if course is not None and _first_violated(search, course.profile, chosen) is not None:
         return course.profile, _COURSE
-    program = through_tube(ego, tube, bound, search.best.arrival * (1 - 10 * OPTIMAL), course)
+    most = search.best.arrival * (1 - 10 * OPTIMAL)
+    program = through_tube(ego, tube, bound, most, near or course) if bound < most else None
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"
@@ -282,6 +300,7 @@ def _certified(search: _Search, enough: float) -> tuple[float, list[int]]:
     """
     ego, arrival = search.ego, search.best.arrival
     bound, claims = ego.solo_bound, []
+    fits: Fits = {}
     # those that cost most when passed after tell most: often a few of them prove all that there is to prove
     known = sorted(search.known, key=lambda index: (-search.claim(index).after, index))
     further = [
@@ -291,7 +310,7 @@ def _certified(search: _Search, enough: float) -> tuple[float, list[int]]:
     ]
     for count, index in enumerate([*known, *further], start=1):
         claims += claims_of(ego, search.forbidden(index))
-        bound = max(bound, least_arrival(ego, claims, arrival))
+        bound = max(bound, least_arrival(ego, claims, arrival, known=fits))
         if bound >= arrival * (1 - (enough if count < len(known) else CLOSED)):
             break
     return bound, sorted({*known, *further})

@@ -1,8 +1,7 @@
 """Where ego can be when: ranges of arc length over time that hold for every motion, and what follows from them.
 
-All is said in the clock of the motion with the jerk forgotten: a place is told by the time at which that motion is
-there. No motion is faster anywhere, so in this clock every motion advances by at most one second a second, and a
-bound at one time bounds all other times.
+All is said in ego's clock (``coord.timing.clock``), in which every motion advances by at most one second a second:
+so a bound at one time bounds all other times.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy.typing as npt
 
 from coord.alone.ramp import Ramp
 from coord.model.arrays import Array
-from coord.model.profile import VelocityProfile
+from coord.timing.clock import clock
 from coord.timing.ego import Ego
 from coord.tolerances import SAME_PLACE
 
@@ -49,16 +48,6 @@ def part(ego: Ego, times: Array, low: Array, high: Array, *, lasts: bool) -> Par
     clocks = [clock(ego.relaxed, line) for line in (low, high)]
     can_follow = not lasts and bool(low.min() >= -SAME_PLACE)
     return Part(times, low, high, clocks[0], clocks[1], can_follow, bool(high.max() <= ego.length + SAME_PLACE))
-
-
-def clock(relaxed: VelocityProfile, s: Array) -> Array:
-    """The times (m,) [s] at which the motion without jerk is at the arc lengths s (m,) [m], or at the nearer end."""
-    s = np.clip(s, 0.0, relaxed.length)
-    k = np.clip(np.searchsorted(relaxed.states[:, 0], s, side="right") - 1, 0, len(relaxed.times) - 2)
-    s0, v, a = relaxed.states[k].T
-    root = v + np.sqrt(np.maximum(v * v + 2 * a * (s - s0), 0.0))
-    u = np.divide(2 * (s - s0), root, out=np.zeros_like(s), where=root > 0)
-    return np.asarray(np.minimum(relaxed.times[k] + u, relaxed.times[k + 1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

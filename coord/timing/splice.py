@@ -46,8 +46,9 @@ def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> Iterator
     levels = _levels(afters, befores)
     if levels is None:
         return
+    passed = time_at(ego.alone, [s for _, s, _ in levels]).tolist()
     for ending, share in product(_ENDINGS, _BEGINNINGS):
-        profile = _chain(ego, levels, ending, share)
+        profile = _chain(ego, levels, passed, ending, share)
         if profile is not None:
             yield profile
 
@@ -75,14 +76,20 @@ def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, 
     return levels
 
 
-def _chain(ego: Ego, levels: list[tuple[float, float, float]], ending: float, share: float) -> VelocityProfile | None:
-    """The alone profile through all levels, each joined by one arc; None where an arc does not exist."""
+def _chain(
+    ego: Ego, levels: list[tuple[float, float, float]], passed: list[float], ending: float, share: float
+) -> VelocityProfile | None:
+    """The alone profile through all levels, each joined by one arc; None where an arc does not exist.
+
+    ``passed`` : when the alone profile is at the place of each level [s].
+    """
     current = ego.alone
     earliest = current.departure
-    for delay, s, kept_to in levels[1:]:
+    for (delay, _, kept_to), at in zip(levels[1:], passed[1:], strict=True):
         target = ego.alone.shifted(delay)
-        end = float(time_at(target, s)[0]) + ending
-        earliest = max(float(time_at(current, kept_to)[0]), earliest)
+        end = at + delay + ending
+        if kept_to > 0:
+            earliest = max(float(time_at(current, kept_to)[0]), earliest)
         begin = end - (end - earliest) * share
         joined = _arc(ego, current, target, begin, min(end, target.arrival))
         if joined is None:

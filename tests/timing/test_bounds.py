@@ -8,6 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from coord.timing.bounds import inner_claims, least_arrival
+
 #: [m] Lattice units: steps of 0.5 s with jerks of -1, 0, 1 m/s3 move by multiples of this.
 UNIT = 1 / 48
 
@@ -86,3 +88,19 @@ def test_with_bends_every_arrival_respects_its_bound(bent_crossing, timed, seed)
             continue
         for ego, timing in zip(*found[:2], strict=True):
             assert ego.solo_bound <= timing.lower_bound <= timing.profile.arrival
+
+
+def test_what_is_known_of_pairs_of_claims_changes_no_bound(lanes, timed):
+    """As claims are added one after the other, the bound with the pairs kept is the same as without, and never falls."""
+    raised = 0
+    for seed in range(12):
+        found = timed(lanes(seed))
+        if found is None:
+            continue
+        ego, meetings, claims, known, before = found[0][-1], found[2][-1], [], {}, 0.0
+        for meeting in meetings:
+            claims += inner_claims(ego, meeting)
+            bound = least_arrival(ego, claims, 1e3, known=known)
+            assert bound == least_arrival(ego, claims, 1e3) >= before
+            raised, before = raised + (bound > before > 0), bound
+    assert raised > 0

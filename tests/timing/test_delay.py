@@ -60,7 +60,7 @@ def test_delays_between_before_and_after_all_collide():
 
 
 def test_the_start_delay_is_the_least_one_that_is_clear_of_all():
-    """Four crossings of one way: clear of all with it, and of not all with any smaller delay, in steps of 50 ms."""
+    """Four crossings of one way: clear of all with it, not with any smaller delay, in steps of 50 ms; a contact sets it."""
     rng = np.random.default_rng(3)
     for _ in range(20):
         mine = rest_to_rest(20.0, Limits(1.0, 0.5, 0.5, 1.0, 0.5))
@@ -69,8 +69,11 @@ def test_the_start_delay_is_the_least_one_that_is_clear_of_all():
             limits = Limits(*rng.uniform((0.5, 0.3, 0.3, 0.5, 0.3), (2, 1, 1, 3, 1)).tolist())
             other = rest_to_rest(10.0, limits).shifted(rng.uniform(0, 10))
             meetings.append(meeting(ego, straight((x, -5), (x, 5)), 0.65, other))
-        delayed = start_delay(mine, meetings)
+        contacts = {}
+        delayed = start_delay(mine, meetings, contacts)
         assert delayed is not None
+        assert contacts == {k: after_contact(mine, meetings[k].window) for k in contacts}
+        assert max((one.delay for one in contacts.values()), default=0.0) == pytest.approx(delayed.departure, abs=1e-6)
         assert all(excess(delayed, one.window).is_clear for one in meetings)
         for delay in np.arange(0.0, delayed.departure - 5e-3, 0.05).tolist():
             assert not all(excess(mine.shifted(delay), one.window).is_clear for one in meetings)

@@ -61,6 +61,25 @@ def test_a_box_that_says_clear_is_never_wrong():
     assert met > 20
 
 
+def test_a_rough_look_never_tells_a_wrong_side():
+    """Whenever spans of the window tell a side, the exact check says that it is passed there; they tell more than the box."""
+    rng = np.random.default_rng(4)
+    sides, beyond_the_box = set(), 0
+    for _ in range(80):
+        _, profile, found = random_meetings(rng, 4)
+        for meeting, *_ in found:
+            for delay in (0.0, 2.0, 5.0):
+                delayed = profile.shifted(delay)
+                side, gap = meeting.side(delayed), excess(delayed, meeting.window)
+                if side is None:
+                    continue
+                sides.add(side)
+                beyond_the_box += not meeting.is_avoided(delayed)
+                assert gap.over_low <= 0 if side else gap.under_high <= 0
+    assert sides == {True, False}
+    assert beyond_the_box > 10
+
+
 def test_the_first_violated_meeting_is_the_one_that_collides_first():
     """Against sampled distances: none is found only if nobody comes too close; else it is the earliest, within 0.1 s."""
     rng = np.random.default_rng(2)
