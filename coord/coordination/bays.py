@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import islice
 
 import numpy as np
@@ -34,6 +34,12 @@ _MOST_LOOKS, _PATH, _FEW_STATES = 250_000, 2000, 40
 
 #: [m] Places of a path are looked at so far apart.
 _SAMPLE = 0.1
+
+#: Places compared with all others at once: that keeps the tables small on large floors.
+_AT_ONCE = 16
+
+#: [m] Bays are sought so far around the paths of a group.
+_AROUND = 5.0
 
 #: The shape of ways while bays are sought: it is found about five times as quickly as the default.
 _SKETCH = "taut"
@@ -66,7 +72,7 @@ class _Search:
         now, outcome = found, moves_home(lattice, MOST_STATES)
         bays: dict[int, Point] = {}
         while outcome.moves is None and len(bays) < _MOST_ROBOTS:
-            better = self.one_more(now, group, lattice, outcome)
+            better = self.one_more(now, group, lattice, outcome, bays)
             if better is None:
                 return found
             now, lattice, outcome, (n, place) = better
@@ -78,11 +84,12 @@ class _Search:
         return Floor(self.problem.robots, paths, frozenset(found.blocks), self.problem.workspace.clearance)
 
     def one_more(
-        self, found: Rerouting, group: Sequence[int], lattice: Lattice, outcome: Outcome
+        self, found: Rerouting, group: Sequence[int], lattice: Lattice, outcome: Outcome, taken: Collection[int]
     ) -> tuple[Rerouting, Lattice, Outcome, tuple[int, Point]] | None:
         """The same with one more robot on a way through a bay, the first that brings all home or the most forward."""
         best = None
-        options = (one for n in self.in_the_way(lattice, outcome.stuck) for one in self.bays(found, group, n))
+        stuck = [n for n in outcome.stuck if n not in taken]
+        options = (one for n in self.in_the_way(lattice, stuck) for one in self.bays(found, group, n))
         for n, place in islice(options, _MOST_TRIES):
             if self.left <= 0:
                 break
@@ -101,6 +108,8 @@ class _Search:
 
     def shaped(self, found: Rerouting, lattice: Lattice, group: Sequence[int], bays: Mapping[int, Point]) -> Rerouting:
         """The same with the ways through bays in the shape asked for, as far as all still come home on them."""
+        if self.shape == _SKETCH:
+            return found
         for n, place in bays.items():
             changed = self.through(found, group, n, place, (), self.shape)
             other = None if changed is None else with_other_path(lattice, self.floor(changed), group, n)
@@ -163,7 +172,10 @@ class _Search:
         workspace, own = self.problem.workspace, self.problem.robots[i].footprint.radius
         xmin, ymin, xmax, ymax = workspace.bounds
         rim = own + workspace.clearance + _ROOM
-        x, y = np.arange(xmin + rim, xmax - rim, _GRID), np.arange(ymin + rim, ymax - rim, _GRID)
+        ends = np.concatenate([found.routes[k].path.poses[:, :2] for k in group])
+        low = np.maximum(ends.min(axis=0) - _AROUND, (xmin + rim, ymin + rim))
+        high = np.minimum(ends.max(axis=0) + _AROUND, (xmax - rim, ymax - rim))
+        x, y = np.arange(low[0], high[0], _GRID), np.arange(low[1], high[1], _GRID)
         at = np.stack(np.meshgrid(x, y), axis=2).reshape(-1, 2)
         near, _, _ = too_near(self.problem.obstacles, at, np.full(len(at), rim))
         at = np.delete(at, np.unique(near), axis=0)
@@ -180,5 +192,7 @@ class _Search:
 
 def _beyond(at: Array, places: Array, distance: float) -> Array:
     """Those of some places (m, 2) that are at least so far [m] from others (n, 2)."""
-    gap = at[:, None] - places[None]
-    return np.asarray(at[(np.hypot(gap[..., 0], gap[..., 1]) >= distance).all(axis=1)])
+    for begin in range(0, len(places), _AT_ONCE):
+        gap = at[:, None] - places[None, begin : begin + _AT_ONCE]
+        at = at[(np.hypot(gap[..., 0], gap[..., 1]) >= distance).all(axis=1)]
+    return at

@@ -192,7 +192,8 @@ def _on(company: Company, i: int, route: Route, options: Options) -> _Joined:
         method=options.method,
         certify=options.certify,
     )
-    if found is not None and found.how == "start delay" and all(k in company.profiles for k in near):
+    is_last = options.method == "velocity" and all(k in company.profiles for k in near)
+    if found is not None and found.how == "start delay" and is_last:
         found = next(iter(equally_early(one, meetings, found)), found)
     if not late:
         found = found or waiting(one, meetings)

@@ -88,6 +88,8 @@ def moves_home(lattice: Lattice, most: int) -> Outcome:
             looks += more
             if after not in search.came:
                 search.came[after] = (now[2], [move, *moves])
+                if after == home:
+                    return Outcome(search.moves(after), False, (), 0.0, looks)
                 pushed += 1
                 heapq.heappush(queue, (_left(lattice, after), pushed, after))
     stuck = tuple(n for n, (a, end) in enumerate(zip(best[2], home, strict=True)) if a < end)

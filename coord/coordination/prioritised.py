@@ -73,7 +73,9 @@ def plan_in_order(
             continue  # all that is left to find out is which other groups get stuck, even among few
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in timings], timings)
         own = timing(scene.egos[i], meetings, profile=profile, method=method, certify=certify)
-        timings[i] = courteous(scene, i, own or waiting(scene.egos[i], meetings), meetings, timings)
+        timings[i] = own or waiting(scene.egos[i], meetings)
+        if method == "velocity":
+            timings[i] = courteous(scene, i, timings[i], meetings, timings)
         done(len(timings))
     if stuck:
         raise NoPlanError(stuck.values())

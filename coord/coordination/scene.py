@@ -10,7 +10,6 @@ from coord.conflicts.chords import Chords, chords
 from coord.conflicts.region import ConflictRegion
 from coord.coordination.blocking import Block
 from coord.coordination.company import ends_of, regions_of
-from coord.model.result import BlockingArc
 from coord.timing.ego import Ego
 from coord.timing.meeting import Meeting
 from coord.timing.passing import Timing
@@ -56,13 +55,3 @@ def scene_of(egos: Sequence[Ego], reaches: Sequence[float], blocks: Iterable[Blo
         neighbours[i].append(k)
         neighbours[k].append(i)
     return Scene(egos, chains, neighbours, frozenset(blocks), clearance)
-
-
-def blocked_places(arcs: Sequence[BlockingArc], names: Sequence[str]) -> frozenset[tuple[int, int, str]]:
-    """Arcs as (resting robot, driving robot, where it rests)."""
-    index = {name: i for i, name in enumerate(names)}
-    places = set()
-    for arc in arcs:
-        resting, driving = (arc.first, arc.then) if arc.at == "start" else (arc.then, arc.first)
-        places.add((index[resting], index[driving], arc.at))
-    return frozenset(places)

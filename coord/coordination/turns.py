@@ -19,7 +19,7 @@ from coord.model.profile import VelocityProfile
 from coord.timing.ego import Ego
 from coord.timing.legs import braked, followed, last_moment, onward
 from coord.timing.meeting import Meeting
-from coord.timing.passing import Timing
+from coord.timing.passing import Timing, passed
 
 #: Rounds in which every robot is planned anew, at most; and they end when one saves less than this share.
 _ROUNDS, _LITTLE = 4, 2e-3
@@ -129,12 +129,11 @@ def told(scene: Scene, found: Mapping[int, Timing], timings: Mapping[int, Timing
     for i in by_arrival(found):
         rest = {**timings, **known}
         meetings = scene.meetings(i, [k for k in scene.neighbours[i] if k in rest], rest, remember=True)
-        after = {one.other for one in meetings if one.passes_after(found[i].profile)}
-        before = {one.other for one in meetings} - after
+        after, before = passed(meetings, found[i].profile)
         known[i] = dataclasses.replace(
             found[i],
-            after=tuple(sorted(after)),
-            before=tuple(sorted(before)),
+            after=after,
+            before=before,
             lower_bound=scene.egos[i].solo_bound,
             open=True,
         )

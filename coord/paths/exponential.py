@@ -197,7 +197,9 @@ def _raised(line: Line, found: Flanks, p: float, extra: float, at_angle: tuple[b
     for _ in range(_RAISES):
         shape = curve(found, p, extra, at_angle)
         pieces = refit(shape, shape.first, shape.last, at_angle) if shape is not None else None
-        if shape is None or pieces is None or pieces.begin < detour.least or pieces.end > detour.most:
+        if shape is None or pieces is None:
+            return None
+        if pieces.begin < detour.least - SAME_PLACE or pieces.end > detour.most + SAME_PLACE:
             return None
         lack = line.short_of(detour, pieces.places)
         if lack <= 0:

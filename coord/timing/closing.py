@@ -51,14 +51,12 @@ class Closing:
     profile, is_new : the best profile, and whether it is another one than at first.
     bound : certified bound [s] on any arrival.
     is_decided : whether it is proved that no other choice of before and after saves more than the share CLOSED.
-    programs : relaxations solved.
     """
 
     profile: VelocityProfile
     is_new: bool
     bound: float
     is_decided: bool
-    programs: int
 
 
 class _Chase:
@@ -152,7 +150,7 @@ def close_gap(
     if is_real or chase.best is not best:
         _halving(chase, enough)
     decided = decided or chase.is_closed(CLOSED)
-    return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided, chase.programs)
+    return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided)
 
 
 def _from_below(chase: _Chase, enough: float) -> None:
@@ -192,5 +190,7 @@ def _along(
 
 def _passes_after(course: Course, window: Window) -> bool:
     """Whether a course is mostly behind the middle of a window."""
+    if window.lasts or bool((window.low[:, 0] > window.high[:, 0]).all()):  # the other stays, or never gets there
+        return False
     middle = (window.low[:, 0] + window.high[:, 0]) / 2
-    return not window.lasts and bool(np.median(course.at(window.times[:-1]) - middle) < 0)
+    return bool(np.median(course.at(window.times[:-1]) - middle) < 0)

@@ -74,11 +74,6 @@ class Course:
         times = np.concatenate([[departure], self.times[keep], [arrival]])
         return Course(times, self.at(times))
 
-    def cut(self, arrival: float, length: float) -> Course:
-        """The same course, but at the goal by the arrival [s], and not beyond."""
-        keep = (self.times < arrival) & (self.s < length)
-        return Course(np.append(self.times[keep], arrival), np.append(self.s[keep], length))
-
     def passes(self, s: Array) -> Array:
         """The first times (m,) [s] at which the arc lengths s (m,) [m] are reached."""
         k = np.clip(np.searchsorted(self.s, s, side="left"), 1, len(self.s) - 1)
@@ -92,8 +87,11 @@ def time_knots(
 ) -> Array | None:
     """Knots at the tube's events and ``further`` ones [s], dense behind and before each, as many as a program has.
 
-    None where that would be more than the largest program has. ``mesh`` scales all cells.
+    None where that would be more than the largest program has, or where there is no time at all. ``mesh`` scales all
+    cells.
     """
+    if arrival - departure < _SAME_TIME:
+        return None
     spans = tube.spans
     events = {departure, arrival, *tube.events, *further}
     knots = sorted(t for t in events if departure <= t <= arrival)

@@ -319,7 +319,12 @@ def _certified(search: _Search, enough: float) -> tuple[float, list[int]]:
 def _finished(
     profile: VelocityProfile, meetings: list[Meeting], how: str, lower_bound: float, nodes: int, is_open: bool
 ) -> Timing:
+    lower_bound = min(lower_bound, profile.arrival)  # a splice may arrive sooner by its rounding
+    return Timing(profile, *passed(meetings, profile), how, lower_bound, nodes, is_open)
+
+
+def passed(meetings: list[Meeting], profile: VelocityProfile) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Of the other robots those that a profile lets pass, and those that it precedes."""
     after = {meeting.other for meeting in meetings if meeting.passes_after(profile)}
     before = {meeting.other for meeting in meetings} - after
-    lower_bound = min(lower_bound, profile.arrival)  # a splice may arrive sooner by its rounding
-    return Timing(profile, tuple(sorted(after)), tuple(sorted(before)), how, lower_bound, nodes, is_open)
+    return tuple(sorted(after)), tuple(sorted(before))

@@ -12,7 +12,7 @@ from coord.alone.check import keeps_limits
 from coord.timing.delay import after_contact, before_contact
 from coord.timing.ego import Ego
 from coord.timing.meeting import Meeting, first_violated
-from coord.timing.passing import Timing
+from coord.timing.passing import Timing, passed
 from coord.timing.splice import spliced
 from coord.tolerances import OPTIMAL
 
@@ -33,13 +33,13 @@ def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Tim
     afters = [dataclasses.replace(after_contact(ego.alone, meetings[k].window), delay=delay) for k in reasons]
     befores = [before_contact(ego.alone, meetings[k].window) for k in in_the_way]
     latest = timing.profile.arrival * (1 + OPTIMAL)
-    return [
-        dataclasses.replace(timing, profile=profile, how="splice")
-        for profile in spliced(ego, afters, befores)
-        if profile.arrival <= latest
-        and first_violated(meetings, profile) is None
-        and keeps_limits(profile, ego.robot.limits, ego.caps)
-    ]
+    found = []
+    for profile in spliced(ego, afters, befores):
+        is_clear = profile.arrival <= latest and first_violated(meetings, profile) is None
+        if is_clear and keeps_limits(profile, ego.robot.limits, ego.caps):
+            after, before = passed(meetings, profile)  # it may precede somebody whom the other one lets pass
+            found.append(dataclasses.replace(timing, profile=profile, after=after, before=before, how="splice"))
+    return found
 
 
 def _violated(meetings: list[Meeting], ego: Ego, delay: float) -> list[int]:
