@@ -55,7 +55,7 @@ def test_a_profile_tells_its_own_sides_not_those_of_the_one_it_stands_for():
         robots = (
             Robot("early", Footprint(0.3), quick, (4.0, 5.0), (4.0, 15.0), priority=1, release=release),
             Robot("late", Footprint(0.3), slow, (16.0, y - 1), (16.0, 12.0), priority=2),
-            Robot("ego", Footprint(0.3), Limits(1.0, 0.5, 0.5, 1.0, 0.5), (1.0, 10.0), (19.0, 10.0), priority=3),
+            Robot("ego", Footprint(0.3), Limits(1.5, 1.0, 1.0, 2.0, 1.0), (1.0, 10.0), (19.0, 10.0), priority=3),
         )
         problem = Problem("late", Workspace((0.0, 0.0, 20.0, 20.0), 0.1), robots)
         found = plan(problem, Options(profile="fastest")).plan.robots
