@@ -10,13 +10,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from itertools import islice
+from itertools import combinations, islice
 
 import numpy as np
 
 from coord.coordination.blocking import in_order
 from coord.coordination.lattice import Floor, Lattice, lattice_of, with_other_path
 from coord.coordination.moves import MOST_STATES, Outcome, moves_home
+from coord.coordination.passing_by import is_separated
 from coord.coordination.rerouting import Rerouting
 from coord.coordination.way_round import Rests, rests, way_round
 from coord.geometry.shapes import too_near
@@ -49,8 +50,7 @@ def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callab
     """Paths on which groups can leave together, as far as bays help; others are left as they are."""
     search = _Search(problem, rests(problem), shape, check_time, _MOST_LOOKS)
     for group in found.together:
-        if len(group) > 2:
-            found = search.untied(found, group)
+        found = search.untied(search.parted(found, group), group)
     return found
 
 
@@ -64,10 +64,33 @@ class _Search:
     check_time: Callable[[], None]
     left: int
 
+    def parted(self, found: Rerouting, group: Sequence[int]) -> Rerouting:
+        """The same with no two robots of a group on paths that keep them from both coming home, as far as bays help."""
+        if lattice_of(self.floor(found), group) is not None:
+            return found
+        for pair in combinations(group, 2):
+            if lattice_of(self.floor(found), pair) is None and is_separated(self.problem, found, *pair):
+                options = (one for n in (0, 1) for one in self.bays(found, pair, n))
+                ways = (self.one_of_two(found, pair, n, place) for n, place in options)
+                found = next((way for way in ways if way is not None), found)
+        return found
+
+    def one_of_two(self, found: Rerouting, pair: Sequence[int], n: int, place: Point) -> Rerouting | None:
+        """The same with one robot of a pair on a way through a bay, if then both come home."""
+        if self.left <= 0:
+            return None
+        self.check_time()
+        self.left -= _PATH
+        changed = self.through(found, pair, n, place, (0, 1), _SKETCH)
+        lattice = None if changed is None else lattice_of(self.floor(changed), pair)
+        if changed is None or lattice is None or self.looked(lattice).moves is None:
+            return None
+        return self.shaped(changed, lattice, pair, {n: place})
+
     def untied(self, found: Rerouting, group: Sequence[int]) -> Rerouting:
         """The same with some robots of a group on ways through bays; unchanged where that does not help."""
         lattice = lattice_of(self.floor(found), group)
-        if lattice is None:
+        if lattice is None or len(group) == 2:
             return found
         now, outcome = found, moves_home(lattice, MOST_STATES)
         bays: dict[int, Point] = {}

@@ -115,3 +115,20 @@ def test_groups_with_moves_home_keep_their_paths():
     problem = scene(*ring(4, 3.0))
     found = without_bays(problem)
     assert with_bays(problem, found, "fitted", lambda: None) is found
+
+
+def test_two_robots_head_on_in_a_narrow_lane_pass_where_it_has_an_alcove():
+    """One waits in the alcove; in the same lane without it there is no way, which is proved."""
+    limits = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
+    robots = (
+        Robot("east", Footprint(0.3), limits, (0.5, 0.4), (11.0, 0.4)),
+        Robot("west", Footprint(0.3), limits, (11.5, 0.4), (1.0, 0.4)),
+    )
+    floor = Workspace((0.0, 0.0, 12.0, 2.2), 0.05)
+    beside = (rectangle("left", (0.0, 0.8, 5.4, 2.2)), rectangle("right", (6.6, 0.8, 12.0, 2.2)))
+    found = plan(Problem("lane", floor, robots, beside))
+    assert found.certified
+    assert max(one.path.poses[:, 1].max() for one in found.plan.robots) > 1.0
+    shut = plan(Problem("lane", floor, robots, (*beside, rectangle("alcove", (5.4, 0.8, 6.6, 2.2)))))
+    assert shut.plan is None
+    assert "cannot pass each other, at whatever speeds" in shut.diagnoses[0].text
