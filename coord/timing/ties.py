@@ -9,7 +9,9 @@ from __future__ import annotations
 import dataclasses
 
 from coord.alone.check import keeps_limits
-from coord.timing.delay import after_contact, before_contact
+from coord.errors import SolverError
+from coord.model.profile import VelocityProfile
+from coord.timing.delay import Contact, after_contact, before_contact
 from coord.timing.ego import Ego
 from coord.timing.meeting import Meeting, first_violated
 from coord.timing.passing import Timing, passed
@@ -23,7 +25,8 @@ _A_LITTLE = 1e-3
 def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Timing]:
     """Other profiles that are clear of all meetings and arrive as early, give or take the share OPTIMAL.
 
-    Each slows down once, at another time; empty where the robot neither waits at its start nor slows down like that.
+    Each slows down once, at another time; empty where the robot neither waits at its start nor slows down like that,
+    or a library fails.
     """
     if timing.how not in ("start delay", "splice"):
         return []
@@ -34,12 +37,19 @@ def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Tim
     befores = [before_contact(ego.alone, meetings[k].window) for k in in_the_way]
     latest = timing.profile.arrival * (1 + OPTIMAL)
     found = []
-    for profile in spliced(ego, afters, befores):
+    for profile in _motions(ego, afters, befores):
         is_clear = profile.arrival <= latest and first_violated(meetings, profile) is None
         if is_clear and keeps_limits(profile, ego.robot.limits, ego.caps):
             after, before = passed(meetings, profile)  # it may precede somebody whom the other one lets pass
             found.append(dataclasses.replace(timing, profile=profile, after=after, before=before, how="splice"))
     return found
+
+
+def _motions(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[VelocityProfile]:
+    try:
+        return list(spliced(ego, afters, befores))
+    except SolverError:  # the robot has a profile already
+        return []
 
 
 def _violated(meetings: list[Meeting], ego: Ego, delay: float) -> list[int]:

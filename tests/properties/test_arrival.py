@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from coord.errors import SolverError
 from coord.model.footprint import Footprint, square
+from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
 from coord.plan import plan
@@ -80,6 +81,9 @@ def test_whoever_goes_before_a_more_urgent_robot_is_bound_to_by_arcs(seed, count
         assert min(urgency[name] for name in bound) <= urgency[late]
 
 
+#: No profile is smoothed.
+FASTEST = Options(profile="fastest")
+
 #: Crowds of which the plans need splices, programs and ways round.
 SEEDS = (14, 26, 29, 32)
 
@@ -103,9 +107,9 @@ FAILURES = {
 @pytest.mark.parametrize("failure", FAILURES)
 def test_everybody_arrives_whatever_step_of_the_timing_stage_fails(monkeypatch, failure):
     """Four crowds with rings and priorities: certified; and all but a missing start delay, which a program replaces, make a difference."""
-    before = [plan(crowd(seed, 12, cells=5)) for seed in SEEDS]
+    before = [plan(crowd(seed, 12, cells=5), FASTEST) for seed in SEEDS]
     monkeypatch.setattr(*FAILURES[failure])
-    after = [plan(crowd(seed, 12, cells=5)) for seed in SEEDS]
+    after = [plan(crowd(seed, 12, cells=5), FASTEST) for seed in SEEDS]
     assert all(result.certified for result in after)
     same = [result.document for result in before] == [result.document for result in after]
     assert failure == "start delay" or not same
@@ -125,9 +129,18 @@ def test_everybody_arrives_when_all_steps_fail_together(monkeypatch):
         assert {one.how for one in result.plan.robots} <= {"alone", "waited"}
 
 
+def test_everybody_arrives_where_the_library_fails_among_equally_early_profiles(monkeypatch):
+    """Four crowds: certified, and at least one robot waits that would have rolled."""
+    before = [plan(crowd(seed, 12, cells=5), FASTEST).document for seed in SEEDS]
+    monkeypatch.setattr("coord.timing.ties.spliced", _library)
+    after = [plan(crowd(seed, 12, cells=5), FASTEST) for seed in SEEDS]
+    assert all(result.certified for result in after)
+    assert before != [result.document for result in after]
+
+
 #: Steps that are switched off one by one; a program is also sought where the gap to the bound is closed.
 SWITCHES = {
-    "splice": ("coord.timing.passing.spliced",),
+    "splice": ("coord.timing.passing.spliced", "coord.timing.ties.spliced"),
     "program": ("coord.timing.passing.through_tube", "coord.timing.closing.through_tube"),
     "branch and bound": ("coord.timing.passing._branch_and_bound",),
 }
@@ -138,11 +151,11 @@ SWITCHES = {
 def test_arrival_does_not_hang_on_any_single_step(monkeypatch, step):
     """200 crowds without a ring of handed-over places: certified with the step switched off, some of them otherwise than with it."""
     problems = [crowd(seed, 7, cells=4, shapes=SHAPES[list(SHAPES)[seed % 3]]) for seed in range(100, 300)]
-    before = [plan(problem).document for problem in problems[:40]]
+    before = [plan(problem, FASTEST).document for problem in problems[:40]]
     instead = (lambda _: (0, True)) if step == "branch and bound" else (lambda *_: [] if step == "splice" else None)
     for target in SWITCHES[step]:
         monkeypatch.setattr(target, instead)
-    after = [plan(problem) for problem in problems]
+    after = [plan(problem, FASTEST) for problem in problems]
     assert all(result.certified for result in after)
     assert not any("room to pass" in told.text for result in after for told in result.plan.rerouted)
     assert before != [result.document for result in after[:40]]
