@@ -85,7 +85,7 @@ def test_whoever_goes_before_a_more_urgent_robot_is_bound_to_by_arcs(seed, count
 FASTEST = Options(profile="fastest")
 
 #: Crowds of which the plans need splices, programs and ways round.
-SEEDS = (14, 26, 29, 32)
+SEEDS = (14, 21, 26, 32)
 
 
 def _library(*_, **__):
