@@ -161,8 +161,9 @@ def test_an_exponential_detour_is_told_with_a_and_b_and_r_squared_of_rise_and_fa
 
 
 def test_where_the_exponential_shape_gives_up_it_says_so_and_why():
-    """A start right before the obstacle leaves no room for the foot of a rise."""
-    told = story(robot("red", ((4.4, 6.0), (11.0, 6.0))), obstacles=(COLUMN,), shape="exponential")
+    """Out of a pocket that is shut towards the goal the way turns back, and has no one height over the line."""
+    pocket = Polygon("pocket", [(4, 4), (7, 4), (7, 8), (4, 8), (4, 7.7), (6.7, 7.7), (6.7, 4.3), (4, 4.3)])
+    told = story(robot("red", ((6.0, 6.0), (11.0, 6.0))), obstacles=(pocket,), shape="exponential")
     assert told.trips[0].route.fits == ()  # type: ignore[union-attr]
     (remark,) = told.trips[0].route.remarks  # type: ignore[union-attr]
     assert lines_with(told, "Fitted turns instead of exponential ones") == [remark]
