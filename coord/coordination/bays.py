@@ -14,12 +14,11 @@ from itertools import combinations, islice
 
 import numpy as np
 
-from coord.coordination.blocking import in_order
 from coord.coordination.lattice import Floor, Lattice, lattice_of, with_other_path
 from coord.coordination.moves import MOST_STATES, Outcome, moves_home
 from coord.coordination.passing_by import is_separated
 from coord.coordination.rerouting import Rerouting
-from coord.coordination.way_round import Rests, rests, way_round
+from coord.coordination.way_round import Rests, rests, way_through
 from coord.geometry.shapes import too_near
 from coord.model.arrays import Array, Point
 from coord.model.problem import Problem
@@ -50,7 +49,7 @@ def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callab
     """Paths on which groups can leave together, as far as bays help; others are left as they are."""
     search = _Search(problem, rests(problem), shape, check_time, _MOST_LOOKS)
     for group in found.together:
-        found = search.untied(search.parted(found, group), group)
+        found = search.untied(found, group)
     return found
 
 
@@ -66,8 +65,6 @@ class _Search:
 
     def parted(self, found: Rerouting, group: Sequence[int]) -> Rerouting:
         """The same with no two robots of a group on paths that keep them from both coming home, as far as bays help."""
-        if lattice_of(self.floor(found), group) is not None:
-            return found
         for pair in combinations(group, 2):
             if lattice_of(self.floor(found), pair) is None and is_separated(self.problem, found, *pair):
                 options = (one for n in (0, 1) for one in self.bays(found, pair, n))
@@ -90,6 +87,9 @@ class _Search:
     def untied(self, found: Rerouting, group: Sequence[int]) -> Rerouting:
         """The same with some robots of a group on ways through bays; unchanged where that does not help."""
         lattice = lattice_of(self.floor(found), group)
+        if lattice is None:
+            found = self.parted(found, group)
+            lattice = lattice_of(self.floor(found), group)
         if lattice is None or len(group) == 2:
             return found
         now, outcome = found, moves_home(lattice, MOST_STATES)
@@ -145,18 +145,11 @@ class _Search:
     ) -> Rerouting | None:
         """The same with one robot on a way through a bay, over no place of rest that it did not run over before."""
         i = group[n]
-        robots = [*self.problem.robots]
-        robots[i] = dataclasses.replace(robots[i], via=(place,))
-        known = dataclasses.replace(self.known, problem=dataclasses.replace(self.problem, robots=tuple(robots)))
         allowed = frozenset(block for block in found.blocks if block.driving == i)
-        way = way_round(known, i, found.routes[i], allowed, shape)
+        way = way_through(self.known, i, found.routes[i], allowed, shape, (place,))
         if way is None:
             return None
-        routes = [*found.routes]
-        routes[i] = way.route
-        blocks = tuple(sorted((*(one for one in found.blocks if one.driving != i), *way.blocks), key=in_order))
-        rivals = tuple(sorted({*found.beside.get(i, ()), *(group[m] for m in stuck if m != n)}))
-        return dataclasses.replace(found, routes=tuple(routes), blocks=blocks, beside={**found.beside, i: rivals})
+        return found.on(i, way, tuple(sorted({*found.beside.get(i, ()), *(group[m] for m in stuck if m != n)})))
 
     def looked(self, lattice: Lattice) -> Outcome:
         """A short search for moves home, which is counted."""

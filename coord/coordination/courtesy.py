@@ -1,7 +1,7 @@
 """Of profiles that arrive equally early, the one that holds up those who come later the least.
 
 Each later robot is looked at by itself: by how much it would have to wait at its start, had it to let this robot
-pass and nobody else. So the look ahead costs no more than the meetings that are worked out anyway.
+pass and nobody else. So the look ahead costs a delayed robot's meetings once more, however large the fleet is.
 """
 
 from __future__ import annotations

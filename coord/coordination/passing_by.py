@@ -7,7 +7,6 @@ away, the distance decides how exactly the two must hit the right moment.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterator
 from itertools import combinations
@@ -18,9 +17,9 @@ from coord.conflicts.chords import chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.inner import inner_regions
 from coord.conflicts.region import ConflictRegion, conflict_regions
-from coord.coordination.blocking import Block, in_order
+from coord.coordination.blocking import Block
 from coord.coordination.rerouting import Rerouting
-from coord.coordination.way_round import Rests, Way, rests, way_round
+from coord.coordination.way_round import Rests, Way, rests, way_round, way_through
 from coord.model.arrays import Point
 from coord.model.obstacle import Circle
 from coord.model.problem import Problem
@@ -124,11 +123,8 @@ def _abreast(
     (x, y), (u, v) = robot.start, robot.goal
     aside = -side * needed * (v - y) / length, side * needed * (u - x) / length
     via = tuple((a + aside[0], b + aside[1]) for a, b in (robot.start, robot.goal))
-    robots = [*known.problem.robots]
-    robots[driving] = dataclasses.replace(robot, via=via)
-    abreast = dataclasses.replace(known, problem=dataclasses.replace(known.problem, robots=tuple(robots)))
     allowed = frozenset(block for block in found.blocks if block.driving == driving)
-    way = way_round(abreast, driving, found.routes[driving], allowed, shape)
+    way = way_through(known, driving, found.routes[driving], allowed, shape, via)
     changed = None if way is None else _with(found, driving, other, way)
     return None if changed is None or is_separated(known.problem, changed, driving, other) else changed
 
@@ -205,9 +201,4 @@ def _places(problem: Problem, found: Rerouting, i: int, k: int) -> Iterator[tupl
 
 def _with(found: Rerouting, i: int, other: int, way: Way) -> Rerouting:
     """The same with one robot on another way, beside that of another."""
-    routes = [*found.routes]
-    routes[i] = way.route
-    rest = [block for block in found.blocks if block.driving != i]
-    blocks = tuple(sorted((*rest, *way.blocks), key=in_order))
-    beside = {**found.beside, i: (*found.beside.get(i, ()), other)}
-    return dataclasses.replace(found, routes=tuple(routes), blocks=blocks, beside=beside)
+    return found.on(i, way, (*found.beside.get(i, ()), other))

@@ -7,7 +7,7 @@ Only where the robot itself must stand there, or its path is given, it stays.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import InitVar, dataclass, field
+from dataclasses import InitVar, dataclass, field, replace
 from itertools import groupby, islice
 
 from coord.conflicts.candidates import candidate_pairs
@@ -43,6 +43,12 @@ class Rerouting:
     left: tuple[tuple[Block, ...], ...] = ()
     together: tuple[tuple[int, ...], ...] = ()
     beside: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+
+    def on(self, i: int, way: Way, beside: tuple[int, ...]) -> Rerouting:
+        """The same with one robot on another way, which leaves room to those ``beside`` it."""
+        routes = (*self.routes[:i], way.route, *self.routes[i + 1 :])
+        blocks = sorted((*(block for block in self.blocks if block.driving != i), *way.blocks), key=in_order)
+        return replace(self, routes=routes, blocks=tuple(blocks), beside={**self.beside, i: beside})
 
     @property
     def between(self) -> tuple[Block, ...]:

@@ -104,6 +104,16 @@ def way_round(
     return None
 
 
+def way_through(
+    known: Rests, driving: int, route: Route, allowed: Set[Block], shape: str, via: tuple[Point, ...]
+) -> Way | None:
+    """The same for a robot that has places to pass, whatever it had before."""
+    robots = [*known.problem.robots]
+    robots[driving] = dataclasses.replace(robots[driving], via=via)
+    changed = dataclasses.replace(known, problem=dataclasses.replace(known.problem, robots=tuple(robots)))
+    return way_round(changed, driving, route, allowed, shape)
+
+
 def _inside(places: Array, low: Array, high: Array, reach: Array) -> npt.NDArray[np.bool_]:
     """Whether places (..., 2) lie in boxes widened by their reaches."""
     return np.asarray(((places >= low - reach[..., None]) & (places <= high + reach[..., None])).all(axis=-1))

@@ -1,17 +1,15 @@
-"""The door of casadi's conic solvers: jerk-limited motion inside bounds, on a fixed time grid, as a linear program."""
+"""Jerk-limited motion inside bounds, on a fixed time grid, as a linear program."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
-import casadi
 import numpy as np
-import numpy.typing as npt
 
 from coord.model.arrays import Array
 from coord.model.robot import Limits
+from coord.solvers.conic import Program, program
 
 #: Programs are rounded up to these numbers of cells, so that few solvers are built.
 SIZES = (8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 256, 320, 384, 512)
@@ -26,6 +24,15 @@ _BEYOND = 1.0
 #: [m/s] Between departure and arrival the program's robot creeps at least this fast, so that rounding
 #: cannot make it move backwards.
 CREEP = 1e-7
+
+#: Row and column of each coefficient of a cell. Columns: 0..3 are s, v, a, j of the cell, 4..6 the next s, v, a. Rows:
+#: three equations of motion, the two inner Bezier points of s, the middle one of v.
+_PLACES = (
+    (0, 4), (0, 0), (0, 1), (0, 2), (0, 3),
+    (1, 5), (1, 1), (1, 2), (1, 3),
+    (2, 6), (2, 2), (2, 3),
+    (3, 0), (3, 1), (4, 0), (4, 1), (4, 2), (5, 1), (5, 2),
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,11 +76,9 @@ def smoothest(cells: Cells, limits: Limits, length: float, ease: float = 0.0) ->
 def _solve(cells: Cells, limits: Limits, length: float | None, ease: float = 0.0) -> Array | None:
     """Unknowns s, v, a, j for each cell, then the last s, v, a."""
     n = len(cells.h)
-    low, high = _variable_bounds(cells, limits, length)
-    row_low, row_high = _row_bounds(cells, _farthest_end(cells, limits))
-    if np.any(low > high) or np.any(row_low > row_high):
+    box, row_box = _variable_bounds(cells, limits, length), _row_bounds(cells, _farthest_end(cells, limits))
+    if np.any(box[0] > box[1]) or np.any(row_box[0] > row_box[1]):
         return None
-    solver, a_pattern, h_pattern, order = _program(n)
     weight = np.full(4 * n + 3, _DIAGONAL)
     gradient = np.zeros(4 * n + 3)
     if length is None:
@@ -81,16 +86,9 @@ def _solve(cells: Cells, limits: Limits, length: float | None, ease: float = 0.0
     else:
         weight[3:-3:4] += cells.h
         weight[2:-3:4] += ease * cells.h
-    solution = solver(
-        h=casadi.DM(h_pattern, weight),
-        g=gradient,
-        a=casadi.DM(a_pattern, _coefficients(cells.h)[order]),
-        lba=row_low,
-        uba=row_high,
-        lbx=low,
-        ubx=high,
-    )
-    return np.asarray(solution["x"]).ravel() if solver.stats()["success"] else None
+    motion = _program(n)
+    x, _ = motion.solve(weight, gradient, _coefficients(cells.h), row_box, box)
+    return x if motion.is_solved else None
 
 
 def _variable_bounds(cells: Cells, limits: Limits, length: float | None) -> tuple[Array, Array]:
@@ -129,27 +127,13 @@ def _row_bounds(cells: Cells, end: float) -> tuple[Array, Array]:
 
 
 def _coefficients(h: Array) -> Array:
-    """Values of the rows' coefficients, cell by cell, in the order of ``_places``."""
+    """Values of the rows' coefficients, cell by cell, in the order of ``_PLACES``."""
     one = np.ones_like(h)
     dynamics = [one, -one, -h, -(h**2) / 2, -(h**3) / 6, one, -one, -h, -(h**2) / 2, one, -one, -h]
     bezier = [one, h / 3, one, 2 * h / 3, h**2 / 6, one, h / 2]
     return np.stack(dynamics + bezier, axis=1).ravel()
 
 
-def _places(n: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-    """Rows and columns of the coefficients; columns 0..3 are s, v, a, j of the cell, 4..6 the next s, v, a."""
-    row = np.array([0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 3, 3, 4, 4, 4, 5, 5])
-    column = np.array([4, 0, 1, 2, 3, 5, 1, 2, 3, 6, 2, 3, 0, 1, 0, 1, 2, 1, 2])
-    k = np.arange(n)[:, None]
-    return (6 * k + row).ravel(), (4 * k + column).ravel()
-
-
 @lru_cache(maxsize=64)
-def _program(n: int) -> tuple[Any, Any, Any, npt.NDArray[np.intp]]:
-    rows, columns = _places(n)
-    order = np.lexsort((rows, columns))  # casadi keeps columns one after the other
-    starts = np.searchsorted(columns[order], np.arange(4 * n + 4))
-    a = casadi.Sparsity(6 * n, 4 * n + 3, starts.tolist(), rows[order].tolist())
-    h = casadi.Sparsity.diag(4 * n + 3)
-    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 45, "verbose": False}}
-    return casadi.conic("motion", "piqp", {"h": h, "a": a}, options), a, h, order
+def _program(n: int) -> Program:
+    return program("motion", _PLACES, n, rows=6, unknowns=4, more=3, rounds=45)

@@ -1,4 +1,4 @@
-"""The door of casadi's conic solvers for motions whose knots may move: one round of a sequential linear program.
+"""Motions whose knots may move: one round of a sequential linear program.
 
 With knots at fixed times the jerk-limited motions are a convex set. Where the times of some knots are sought as well,
 the equations of motion are taken as linear about a motion that is known: how each state changes when its cell lasts
@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
-import casadi
 import numpy as np
 import numpy.typing as npt
 
 from coord.model.arrays import Array
 from coord.model.robot import Limits
+from coord.solvers.conic import Program, program
 from coord.solvers.linear import CREEP, Cells
 
 #: [s/m] A metre that lacks at a lower bound costs as much as arriving so many seconds later.
@@ -105,17 +104,7 @@ def moved(cells: Cells, limits: Limits, length: float, about: Motion, freedom: F
     weight[3:-7:6] = _SMOOTH * cells.h / limits.jerk**2
     weight[5:-7:6] = _EVEN * cells.h
     weight[4:-7:6] = _STAY
-    solver, a_pattern, h_pattern, order = _program(n)
-    solution = solver(
-        h=casadi.DM(h_pattern, weight),
-        g=gradient,
-        a=casadi.DM(a_pattern, _coefficients(cells, about)[order]),
-        lba=row_box[0],
-        uba=row_box[1],
-        lbx=box[0],
-        ubx=box[1],
-    )
-    x = np.asarray(solution["x"]).ravel()
+    x, _ = _program(n).solve(weight, gradient, _coefficients(cells, about), row_box, box)
     if not np.all(np.isfinite(x)):
         return None
     z = x[:-1].reshape(n + 1, 6)
@@ -198,13 +187,5 @@ def _coefficients(cells: Cells, about: Motion) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _program(n: int) -> tuple[Any, Any, Any, npt.NDArray[np.intp]]:
-    place, k = np.array(_PLACES), np.arange(n)[:, None]
-    rows = (_ROWS * k + place[:, 0]).ravel()
-    columns = np.where(place[:, 1] < 0, 6 * n + 6, 6 * k + place[:, 1]).ravel()
-    order = np.lexsort((rows, columns))  # casadi keeps columns one after the other
-    starts = np.searchsorted(columns[order], np.arange(6 * n + 8))
-    a = casadi.Sparsity(_ROWS * n, 6 * n + 7, starts.tolist(), rows[order].tolist())
-    h = casadi.Sparsity.diag(6 * n + 7)
-    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 60, "verbose": False}}
-    return casadi.conic("movable", "piqp", {"h": h, "a": a}, options), a, h, order
+def _program(n: int) -> Program:
+    return program("movable", _PLACES, n, rows=_ROWS, unknowns=6, more=7, rounds=60)

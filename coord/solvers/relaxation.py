@@ -1,4 +1,4 @@
-"""The door of casadi's conic solvers for proofs: how far any jerk-limited motion could get, bounded from above.
+"""For proofs: how far any jerk-limited motion could get, bounded from above.
 
 Between the knots of a time grid the jerk may be any function within its limit. All that is kept of it are its
 first three Legendre moments, each with the most that it can be; speed and acceleration limits are kept at the knots
@@ -12,14 +12,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
-import casadi
 import numpy as np
-import numpy.typing as npt
 
 from coord.model.arrays import Array
 from coord.model.robot import Limits
+from coord.solvers import conic
+from coord.solvers.conic import Program
 
 #: [1] A metre that lacks at a lower bound costs as much as so many metres that lack at the end.
 _PENALTY = 4.0
@@ -77,23 +76,13 @@ def farthest_bound(stages: Stages, limits: Limits) -> tuple[float, Array]:
     """
     n = len(stages.h)
     box, row_box = _variable_bounds(stages, limits), _row_bounds(stages, limits)
-    rows, columns, order, solver, a_pattern, h_pattern = _program(n)
-    values = _coefficients(stages)
+    program, values = _program(n), _coefficients(stages)
     gradient = np.zeros(6 * n + 4)
     gradient[[6 * n, -1]] = -1.0, _PENALTY
-    solution = solver(
-        h=casadi.DM(h_pattern, np.full(6 * n + 4, _DIAGONAL)),
-        g=gradient,
-        a=casadi.DM(a_pattern, values[order]),
-        lba=row_box[0],
-        uba=row_box[1],
-        lbx=box[0],
-        ubx=box[1],
-    )
-    x, multipliers = np.asarray(solution["x"]).ravel(), np.asarray(solution["lam_a"]).ravel()
+    x, multipliers = program.solve(np.full(6 * n + 4, _DIAGONAL), gradient, values, row_box, box)
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(multipliers))):
         return math.inf, np.zeros((n + 1, 3))
-    reduced = gradient + np.bincount(columns, values * multipliers[rows], minlength=len(gradient))
+    reduced = gradient + np.bincount(program.columns, values * multipliers[program.rows], minlength=len(gradient))
     least = _least(reduced, *box) + _least(-multipliers, *row_box)
     return _ROUNDING - least, np.append(x[:-1], np.zeros(3)).reshape(-1, 6)[:, :3].copy()
 
@@ -145,14 +134,5 @@ def _coefficients(stages: Stages) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _program(n: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.intp], Any, Any, Any]:
-    place = np.array(_PLACES)
-    k = np.arange(n)[:, None]
-    rows = (_ROWS * k + place[:, 0]).ravel()
-    columns = np.where(place[:, 1] < 0, 6 * n + 3, 6 * k + place[:, 1]).ravel()
-    order = np.lexsort((rows, columns))  # casadi keeps columns one after the other
-    starts = np.searchsorted(columns[order], np.arange(6 * n + 5))
-    a = casadi.Sparsity(_ROWS * n, 6 * n + 4, starts.tolist(), rows[order].tolist())
-    h = casadi.Sparsity.diag(6 * n + 4)
-    options: dict[str, Any] = {"error_on_fail": False, "print_time": False, "piqp": {"max_iter": 80, "verbose": False}}
-    return rows, columns, order, casadi.conic("relaxation", "piqp", {"h": h, "a": a}, options), a, h
+def _program(n: int) -> Program:
+    return conic.program("relaxation", _PLACES, n, rows=_ROWS, unknowns=6, more=4, rounds=80)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from coord.model.profile import VelocityProfile
 from coord.timing.ego import Ego
-from coord.timing.meeting import Meeting
+from coord.timing.meeting import Meeting, all_violated
 from coord.timing.program import course_of, smooth_through
 from coord.timing.tube import Tube, after_bound, before_bound
 
@@ -57,16 +57,10 @@ def _arriving(
         profile = next((one for one in found if one is not None), None)
         if profile is None:
             return None
-        violated = _violated(meetings, profile)
+        violated = all_violated(meetings, profile)
         if not violated:
             return profile
         if not sides.keys().isdisjoint(violated):  # a bound of the tube was missed by rounding
             return None
         sides |= {index: meetings[index].passes_after(quickest) for index in violated}
     return None
-
-
-def _violated(meetings: list[Meeting], profile: VelocityProfile) -> list[int]:
-    """All meetings, by index, at which a profile runs into another robot."""
-    gaps = ((index, meeting.excess(profile)) for index, meeting in enumerate(meetings))
-    return [index for index, gap in gaps if gap is not None and not gap.is_clear]

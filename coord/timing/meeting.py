@@ -117,3 +117,9 @@ def first_violated(meetings: list[Meeting], profile: VelocityProfile) -> tuple[i
         if not gap.is_clear and (found is None or gap.time < found[1].time):
             found = (index, gap)
     return found
+
+
+def all_violated(meetings: list[Meeting], profile: VelocityProfile) -> list[int]:
+    """All meetings, by index, at which a profile runs into another robot."""
+    gaps = ((index, meeting.excess(profile)) for index, meeting in enumerate(meetings))
+    return [index for index, gap in gaps if gap is not None and not gap.is_clear]

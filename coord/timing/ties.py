@@ -13,7 +13,7 @@ from coord.errors import SolverError
 from coord.model.profile import VelocityProfile
 from coord.timing.delay import Contact, after_contact, before_contact
 from coord.timing.ego import Ego
-from coord.timing.meeting import Meeting, first_violated
+from coord.timing.meeting import Meeting, all_violated, first_violated
 from coord.timing.passing import Timing, passed
 from coord.timing.splice import spliced
 from coord.tolerances import OPTIMAL
@@ -31,8 +31,9 @@ def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Tim
     if timing.how not in ("start delay", "splice"):
         return []
     delay = timing.profile.arrival - ego.alone.arrival
-    in_the_way = _violated(meetings, ego, delay)
-    reasons = [index for index in _violated(meetings, ego, delay - _A_LITTLE) if index not in in_the_way]
+    in_the_way = all_violated(meetings, ego.alone.shifted(delay))
+    sooner = all_violated(meetings, ego.alone.shifted(delay - _A_LITTLE))
+    reasons = [index for index in sooner if index not in in_the_way]
     afters = [dataclasses.replace(after_contact(ego.alone, meetings[k].window), delay=delay) for k in reasons]
     befores = [before_contact(ego.alone, meetings[k].window) for k in in_the_way]
     latest = timing.profile.arrival * (1 + OPTIMAL)
@@ -50,10 +51,3 @@ def _motions(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[Ve
         return list(spliced(ego, afters, befores))
     except SolverError:  # the robot has a profile already
         return []
-
-
-def _violated(meetings: list[Meeting], ego: Ego, delay: float) -> list[int]:
-    """All meetings, by index, at which ego runs into another robot with a delay [s]."""
-    delayed = ego.alone.shifted(delay)
-    gaps = ((index, meeting.excess(delayed)) for index, meeting in enumerate(meetings))
-    return [index for index, gap in gaps if gap is not None and not gap.is_clear]
