@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -59,9 +61,9 @@ def test_wrong_multipliers_only_loosen_the_bound(monkeypatch, noise):
     rng = np.random.default_rng(0)
 
     def noisy(**arguments):
-        found = dict(true[3](**arguments))
+        found = dict(true.solver(**arguments))
         found["lam_a"] = np.asarray(found["lam_a"]) + rng.normal(0, noise, (found["lam_a"].shape[0], 1))
         return found
 
-    monkeypatch.setattr(relaxation, "_program", lambda n: (*true[:3], noisy, *true[4:]))
+    monkeypatch.setattr(relaxation, "_program", lambda n: dataclasses.replace(true, solver=noisy))
     assert farthest_bound(stages(arrival, cells), LIMITS)[0] >= length
