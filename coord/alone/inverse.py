@@ -34,9 +34,10 @@ def increasing_root(coefficients: Array, h: Array) -> Array:
     Newton's method kept inside a shrinking bracket, so that it cannot leave or stall.
     """
     c0, c1, c2, c3 = coefficients
-    low, high = np.zeros_like(h), h.copy()
+    low, high = np.zeros_like(h), h
     u = np.where(c1 * h > 0, np.clip(-c0 / np.where(c1 * h > 0, c1, 1.0), 0.0, h), h / 2)
     resolved = 4e-16 * (1 + h)
+    roots, rows = np.empty_like(h), np.arange(len(h))
     for _ in range(80):
         value = c0 + u * (c1 + u * (c2 + u * c3))
         below = value < 0
@@ -45,7 +46,14 @@ def increasing_root(coefficients: Array, h: Array) -> Array:
         step = u - value / np.where(slope > 0, slope, np.inf)
         inside = (slope > 0) & (step >= low) & (step <= high)
         following = np.where(inside, step, (low + high) / 2)
-        if ((np.abs(following - u) <= resolved) | (high - low <= resolved)).all():
-            return np.asarray(following)
+        found = (np.abs(following - u) <= resolved) | (high - low <= resolved)
         u = following
-    return np.asarray(u)
+        if found.all():
+            break
+        if found.any():  # few near a stop need many more rounds
+            roots[rows[found]] = u[found]
+            left = np.flatnonzero(~found)
+            rows, resolved = rows[left], resolved[left]
+            c0, c1, c2, c3, low, high, u = (value[left] for value in (c0, c1, c2, c3, low, high, u))
+    roots[rows] = u
+    return roots

@@ -54,7 +54,7 @@ def inner_regions(region: ConflictRegion, length: float) -> tuple[ConflictRegion
     if last - first <= SAME_PLACE:
         nodes = np.array([first, first])
     else:
-        nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, every)]), first, last)
+        nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, every)]), first, last, region.cell)
     middle = (nodes[:-1] + nodes[1:]) / 2
     member, cell = np.nonzero((extent[:, :1] <= middle[None]) & (middle[None] <= extent[:, 1:]))
     ends = [_clipped(blocks, member, nodes[cell + side]) for side in (0, 1)]

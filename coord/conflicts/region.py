@@ -33,12 +33,14 @@ class ConflictRegion:
     low : (n, 2) array [m], for each cell the values at its two nodes of a line below every forbidden s.
     high : (n, 2) array [m], likewise above. Forbidden is the open interval between the two lines.
     blocks : what the region consists of, for ``coord.conflicts.inner``; None where that is not known.
+    cell : how far nodes are apart at most [m].
     """
 
     sigma: Array
     low: Array
     high: Array
     blocks: Blocks | None = None
+    cell: float = REGION_CELL
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sigma", frozen(self.sigma))
@@ -78,7 +80,14 @@ def conflict_regions(
     return tuple(_region(blocks, members) for members in components(blocks))
 
 
-def _region(blocks: Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:
+def refined(region: ConflictRegion, share: float) -> ConflictRegion:
+    """The same with cells so many times as long and bounds nearer to the truth; itself where its blocks are unknown."""
+    if region.blocks is None:
+        return region
+    return _region(region.blocks, np.arange(len(region.blocks.R)), share * region.cell)
+
+
+def _region(blocks: Blocks, members: npt.NDArray[np.intp], longest: float = REGION_CELL) -> ConflictRegion:
     """Outer lines for every cell between nodes: grid points, ends of blocks, and some more near the ends."""
     extent = blocks.sigma[members]
     first, last = float(extent[:, 0].min()), float(extent[:, 1].max())
@@ -86,8 +95,8 @@ def _region(blocks: Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:
         low, high, _, _ = slices(blocks, members, np.full(len(members), first))
         low, high = np.maximum(low, blocks.s[members, 0]), np.minimum(high, blocks.s[members, 1])
         rows = frozen([first, first]), frozen([[low.min()] * 2]), frozen([[high.max()] * 2])
-        return ConflictRegion(*rows, blocks.of(members))
-    nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, members)]), first, last)
+        return ConflictRegion(*rows, blocks.of(members), longest)
+    nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, members)]), first, last, longest)
     member, cell = np.nonzero(
         (extent[:, :1] <= (nodes[:-1] + nodes[1:])[None] / 2) & ((nodes[:-1] + nodes[1:])[None] / 2 <= extent[:, 1:])
     )
@@ -96,12 +105,12 @@ def _region(blocks: Blocks, members: npt.NDArray[np.intp]) -> ConflictRegion:
     lows, highs = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(lows, cell, low)
     np.maximum.at(highs, cell, high)
-    return ConflictRegion(frozen(nodes), frozen(lows), frozen(highs), blocks.of(members))
+    return ConflictRegion(frozen(nodes), frozen(lows), frozen(highs), blocks.of(members), longest)
 
 
-def cell_nodes(given: Array, first: float, last: float) -> Array:
+def cell_nodes(given: Array, first: float, last: float, longest: float) -> Array:
     """Where cells begin and end: the given places, a grid, and some more near the ends, where bounds are steep."""
-    cell = min(REGION_CELL, (last - first) / 8)
+    cell = min(longest, (last - first) / 8)
     ends = [x + sign * share * cell for x, sign in ((first, 1), (last, -1)) for share in _END_NODES]
     count = max(1, int(np.ceil((last - first) / cell)))
     nodes = np.unique(np.concatenate([np.linspace(first, last, count + 1), ends, given]))

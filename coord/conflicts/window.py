@@ -8,6 +8,7 @@ robot passes *after* the other, above it *before*.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,7 @@ from coord.model.profile import VelocityProfile
 from coord.tolerances import SAME_PLACE
 
 #: [m] Strips are cut until the other's motion within one differs from a line over time by less than this.
-_BEND = 5e-4
+BEND: Final = 5e-4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,13 @@ class Window:
 
 
 def window(
-    region: ConflictRegion, other: int, profile: VelocityProfile, *, waits: bool = True, parks: bool = True
+    region: ConflictRegion,
+    other: int,
+    profile: VelocityProfile,
+    *,
+    waits: bool = True,
+    parks: bool = True,
+    bend: float = BEND,
 ) -> Window | None:
     """The window of a region while the other robot follows its profile; None where it never gets there.
 
@@ -58,6 +65,7 @@ def window(
     ----------
     waits, parks : whether the other's start (goal) itself is in ego's way. An exact test knows, the padded
         region does not; if so, resting there counts from t = 0 on (for ever).
+    bend : by how much [m] the other's motion may differ from a line over time within a strip.
     """
     nodes = region.sigma
     if len(profile.jerks) == 0:
@@ -68,7 +76,7 @@ def window(
     at_start, at_goal = nodes[0] <= SAME_PLACE, nodes[-1] >= profile.length - SAME_PLACE
     times[0] = profile.departure if at_start else times[0]
     times[-1] = profile.arrival if at_goal else times[-1]
-    cuts = _cut(times, profile)
+    cuts = _cut(times, profile, bend)
     cell = np.clip(np.searchsorted(times, (cuts[:-1] + cuts[1:]) / 2, side="right") - 1, 0, len(nodes) - 2)
     sigma = np.clip(profile.state(cuts)[:, 0], nodes[0], nodes[-1])
     low, high = _lines_over_time(region, profile, cuts, cell, sigma)
@@ -86,13 +94,13 @@ def _resting(region: ConflictRegion, other: int, since: float, until: float) -> 
     return Window(other, frozen([since, until]), frozen([[low, low]]), frozen([[high, high]]))
 
 
-def _cut(times: Array, profile: VelocityProfile) -> Array:
+def _cut(times: Array, profile: VelocityProfile, most: float) -> Array:
     """Strip borders: where nodes are passed, where phases end, and more where the motion bends."""
     inside = profile.times[(profile.times > times[0]) & (profile.times < times[-1])]
     edges = np.unique(np.concatenate([times, inside]))
     h = np.diff(edges)
     bend = np.abs(profile.state(np.concatenate([edges[:-1], edges[1:]]))[:, 2]).reshape(2, -1).max(axis=0)
-    count = np.maximum(1, np.ceil(h * np.sqrt(bend / (8 * _BEND)))).astype(int)
+    count = np.maximum(1, np.ceil(h * np.sqrt(bend / (8 * most)))).astype(int)
     within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     return np.append(within * np.repeat(h / count, count) + np.repeat(edges[:-1], count), edges[-1])
 

@@ -14,6 +14,9 @@ from coord.solvers.conic import Program, program
 #: Programs are rounded up to these numbers of cells, so that few solvers are built.
 SIZES = (8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 256, 320, 384, 512)
 
+#: The same for the finest grids.
+LARGE_SIZES = (*SIZES, 768, 1024, 1536, 2048)
+
 #: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
 _DIAGONAL = 1e-7
 
@@ -41,7 +44,7 @@ class Cells:
 
     Parameters
     ----------
-    h : (N,) durations [s]; N is one of SIZES.
+    h : (N,) durations [s]; N is one of LARGE_SIZES.
     upper, lower : (N, 4) bounds [m] on the Bezier points of s in each cell.
     caps : (N,) largest speed [m/s] in each cell.
     """

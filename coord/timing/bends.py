@@ -10,28 +10,21 @@ over all chains of cells is a bound, because every motion goes through one of th
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.model.arrays import Array, frozen
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.timing.clock import clock
-from coord.timing.quickest import ramps
-from coord.tolerances import SAME_PLACE
+from coord.timing.links import Link, Node, Stretch, nodes_of, sections
 
-#: Cells into which the acceleration at an end of a bend is cut.
-_CELLS = 48
-
-#: [m] Distance of the places between two nodes at which the way so far and the rest are told apart, and their number.
-_STEP, _MOST_PLACES = 0.1, 100
-
-#: Pieces with varying curvature are cut into this many: in each the highest cap holds, since a bound must not be tight.
-_CUTS = 16
+#: One of so many places is a mark.
+_EVERY = 2
 
 #: [s] Taken off every bound: rounding, which is largest near a stop, stays far below it.
 _ROUNDING = 1e-6
@@ -46,6 +39,8 @@ class Passages:
     places : (P,) arc lengths [m], increasing, from 0 to the length.
     late, long : (P,) times [s], not negative: how much later than the motion without jerk the robot is anywhere
         from that place on, and how much longer it needs from anywhere up to that place.
+    early, still : (P-1, 2) between two places a line over s below all times [s] since departure, and below all times
+        [s] to the goal.
     total : least time [s] for the whole way.
     marks : (Q,) some of the places; ``between`` : (Q, Q) how much longer [s] than the motion without jerk every motion
         needs from one of them to another, however it moves at both.
@@ -54,75 +49,141 @@ class Passages:
     places: Array
     late: Array
     long: Array
+    early: Array
+    still: Array
     total: float
     marks: Array
     between: Array
 
-    def later(self, s: Array) -> Array:
-        """How much later (m,) [s] than the motion without jerk every motion is at the arc lengths s (m,) [m]."""
+    def earliest(self, s: Array, clocks: Array) -> Array:
+        """Least times (m,) [s] from rest at the start to the arc lengths s (m,) [m].
+
+        ``clocks`` : (m,) those of the motion without jerk.
+        """
         k = np.clip(np.searchsorted(self.places, s, side="right") - 1, 0, len(self.places) - 1)
-        return np.asarray(self.late[k])
+        return np.maximum(clocks + self.late[k], self._on_lines(self.early, s))
 
-    def longer(self, s: Array) -> Array:
-        """How much longer (m,) [s] than the motion without jerk every motion needs from the arc lengths s (m,) [m]."""
+    def needed(self, s: Array, left: Array) -> Array:
+        """Least times (m,) [s] from the arc lengths s (m,) [m] to rest at the goal.
+
+        ``left`` : (m,) those of the motion without jerk.
+        """
         k = np.clip(np.searchsorted(self.places, s, side="left"), 0, len(self.places) - 1)
-        return np.asarray(self.long[k])
+        return np.maximum(left + self.long[k], self._on_lines(self.still, s))
+
+    def reached(self, times: Array) -> Array:
+        """The largest arc lengths (m,) [m] at the times (m,) [s], from 0 on, since departure."""
+        return self._last_below(self.early.ravel(), np.repeat(self.places, 2)[1:-1], times)
+
+    def due(self, left: Array) -> Array:
+        """The least arc lengths (m,) [m] from which the goal can be reached in the times (m,) [s], from 0 on."""
+        behind = self.places[-1] - np.repeat(self.places, 2)[-2:0:-1]
+        return np.asarray(self.places[-1] - self._last_below(self.still.ravel()[::-1], behind, left))
+
+    def _on_lines(self, lines: Array, s: Array) -> Array:
+        k = np.clip(np.searchsorted(self.places, s, side="right") - 1, 0, len(lines) - 1)
+        share = np.clip((s - self.places[k]) / (self.places[k + 1] - self.places[k]), 0.0, 1.0)
+        return np.asarray(lines[k, 0] + share * (lines[k, 1] - lines[k, 0]))
+
+    @staticmethod
+    def _last_below(values: Array, places: Array, times: Array) -> Array:
+        """The last places at which lines through the values, which never fall, are no higher than some times."""
+        k = np.clip(np.searchsorted(values, times, side="right") - 1, 0, len(values) - 1)
+        n = np.minimum(k + 1, len(values) - 1)
+        rise = values[n] - values[k]
+        share = np.divide(times - values[k], rise, out=np.zeros_like(times), where=rise > 0)
+        return np.asarray(places[k] + np.clip(share, 0.0, 1.0) * (places[n] - places[k]))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Node:
-    """A place with an upper bound on the speed there; the accelerations (n,) at the ends of cells."""
-
-    s: float
-    speed: float
-    low: Array
-    high: Array
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Link:
-    """Two nodes, places (P,) from the one to the other, and the least times from each cell and to each cell."""
-
-    places: Array
-    since: Array
-    until: Array
-    times: Array
-
-
-def passages(path: Path, limits: Limits, relaxed: VelocityProfile) -> Passages | None:
+def passages(path: Path, limits: Limits, relaxed: VelocityProfile, rounds: int = 0) -> Passages | None:
     """The bounds of a path on which the speed cap varies; None where it is the same everywhere.
 
     Parameters
     ----------
     relaxed : the motion with the jerk forgotten, ``coord.alone.relaxed.without_jerk``.
+    rounds : so often cells are cut: each takes longer than the one before, and halves what the bounds lack.
     """
-    ends, caps = _sections(path, limits)
+    ends, caps = sections(path, limits)
     if len(caps) < 2:
         return None
-    nodes = _nodes(ends, caps, limits, relaxed)
-    links = [_link(a, b, ends, caps, limits) for a, b in itertools.pairwise(nodes)]
+    chains = _chains(nodes_of(ends, caps, limits, relaxed), ends, caps, limits, rounds)
+    links = chains.links
+    places = np.concatenate([link.places for link in links])
+    early, early_lines = _over_places(chains.reached, [(link.since, link.since_lines) for link in links])
+    back = [(link.until[:, ::-1], link.until_lines[:, ::-1]) for link in reversed(links)]
+    still, still_lines = (found[::-1] for found in _over_places(chains.needed[::-1], back))
+    alone = clock(relaxed, places)
+    late = np.maximum.accumulate(early - alone)
+    long = np.maximum.accumulate((still - (relaxed.arrival - alone))[::-1])[::-1]
+    total = max(float(chains.reached[-1][0]), relaxed.arrival)
+    return Passages(
+        frozen(places), frozen(np.maximum(late - _ROUNDING, 0.0)), frozen(np.maximum(long - _ROUNDING, 0.0)),
+        frozen(early_lines - _ROUNDING, 2), frozen(still_lines[:, ::-1] - _ROUNDING, 2),
+        total - _ROUNDING, *_between(links, relaxed),
+    )  # fmt: skip
+
+
+def _over_places(before: Sequence[Array], links: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Least times (P,) over all cells at the places of all links, and lines (P-1, 2) below those in between.
+
+    ``before`` : what the cells at the beginning of each link need before; ``links`` : times and lines of the cells.
+    """
+    values, ends = [], []
+    for least, (times, lines) in zip(before, links, strict=False):
+        values.append((least[:, None] + times).min(axis=0))
+        ends.append(np.append((least[:, None] + lines).min(axis=0), np.inf))
+    at, end = np.concatenate(values), np.concatenate(ends)
+    lines = np.stack([at[:-1], np.minimum(end[:-1], at[1:])], axis=1)
+    return at, np.maximum.accumulate(lines.ravel()).reshape(-1, 2)  # they rise but for rounding
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Chains:
+    """Links, and for the cells of the nodes before and behind each: least times from the start, and to the goal."""
+
+    links: list[Link]
+    reached: list[Array]
+    needed: list[Array]
+
+
+def _chains(nodes: Sequence[Node], ends: Array, caps: Array, limits: Limits, rounds: int) -> _Chains:
+    """Cells are cut where the bounds come from: elsewhere narrower ones would change nothing."""
+    stretches = [Stretch(a, b, ends, caps, limits) for a, b in itertools.pairwise(nodes)]
+    chains = _linked(stretches, nodes)
+    for _ in range(rounds):
+        nodes = [node.split(cells) for node, cells in zip(nodes, _decisive(chains), strict=True)]
+        chains = _linked(stretches, nodes)
+    return chains
+
+
+def _linked(stretches: Sequence[Stretch], nodes: Sequence[Node]) -> _Chains:
+    links = [stretch.link(a, b) for stretch, (a, b) in zip(stretches, itertools.pairwise(nodes), strict=True)]
     reached, needed = [np.zeros(1)], [np.zeros(1)]
     for link in links:
         reached.append((reached[-1][:, None] + link.times).min(axis=0))
     for link in reversed(links):
         needed.append((link.times + needed[-1][None]).min(axis=1))
-    needed.reverse()
-    places = np.concatenate([link.places for link in links])
-    early = np.concatenate([(e[:, None] + link.since).min(axis=0) for e, link in zip(reached, links, strict=False)])
-    still = np.concatenate([(g[:, None] + link.until).min(axis=0) for g, link in zip(needed[1:], links, strict=True)])
-    alone = clock(relaxed, places)
-    late = np.maximum.accumulate(early - alone)
-    long = np.maximum.accumulate((still - (relaxed.arrival - alone))[::-1])[::-1]
-    total = max(float(reached[-1][0]), relaxed.arrival)
-    return Passages(
-        frozen(places), frozen(np.maximum(late - _ROUNDING, 0.0)), frozen(np.maximum(long - _ROUNDING, 0.0)),
-        total - _ROUNDING, *_between(links, relaxed),
-    )  # fmt: skip
+    return _Chains(links, reached, needed[-2::-1])
 
 
-def _between(links: Sequence[_Link], relaxed: VelocityProfile) -> tuple[Array, Array]:
+def _decisive(chains: _Chains) -> list[npt.NDArray[np.bool_]]:
+    """Which cells of each node some bound comes from."""
+    links, reached, needed = chains.links, chains.reached, [*chains.needed]
+    ahead = [np.zeros(len(cells), bool) for cells in reached]
+    behind = [np.zeros(len(cells), bool) for cells in reached]
+    ahead[-1][:] = behind[0][:] = True
+    for m in range(len(links) - 1, -1, -1):
+        ahead[m][(reached[m][:, None] + links[m].since).argmin(axis=0)] = True
+        ahead[m][(reached[m][:, None] + links[m].times).argmin(axis=0)[ahead[m + 1]]] = True
+    for m, link in enumerate(links):
+        behind[m + 1][(needed[m][:, None] + link.until).argmin(axis=0)] = True
+        behind[m + 1][(link.times + needed[m][None]).argmin(axis=1)[behind[m]]] = True
+    return [a | b for a, b in zip(ahead, behind, strict=True)]
+
+
+def _between(links: Sequence[Link], relaxed: VelocityProfile) -> tuple[Array, Array]:
     """Some places, close together next to nodes, and the least extra time from each to each behind a node."""
-    picked = [_graded(len(link.places)) for link in links]
+    picked = [sorted({*range(0, len(link.places), _EVERY), len(link.places) - 1}) for link in links]
     first = np.cumsum([0, *(len(some) for some in picked)])
     marks = np.concatenate([link.places[some] for link, some in zip(links, picked, strict=True)])
     alone = clock(relaxed, marks)
@@ -139,90 +200,3 @@ def _between(links: Sequence[_Link], relaxed: VelocityProfile) -> tuple[Array, A
     # what is needed on a part of the way is needed on the whole
     extra = np.maximum.accumulate(np.maximum.accumulate(extra[::-1], axis=0)[::-1], axis=1)
     return frozen(marks), np.maximum(extra - _ROUNDING, 0.0)
-
-
-def _graded(count: int) -> list[int]:
-    """Indices below a count, close together at both ends."""
-    steps = [0, *(2**k for k in range(count.bit_length()) if 2**k < count)]
-    return sorted({*steps, *(count - 1 - step for step in steps)})
-
-
-def _sections(path: Path, limits: Limits) -> tuple[Array, Array]:
-    """Ends [m] and highest caps [m/s] of sections; neighbours with the same cap are one."""
-    ends: list[float] = []
-    caps: list[float] = []
-    at = 0.0
-    for length, k0, k1 in path.pieces.tolist():
-        count = 1 if k0 == k1 else _CUTS
-        for a, b in itertools.pairwise(np.linspace(k0, k1, count + 1).tolist()):
-            least = 0.0 if a * b <= 0 else min(abs(a), abs(b))
-            cap = min(limits.speed, math.sqrt(limits.lateral_acceleration / max(least, 1e-300)))
-            at += length / count
-            if caps and caps[-1] == cap:
-                ends[-1] = at
-            else:
-                ends.append(at)
-                caps.append(cap)
-    if ends:
-        ends[-1] = path.length
-    return np.array(ends), np.array(caps)
-
-
-def _nodes(ends: Array, caps: Array, limits: Limits, relaxed: VelocityProfile) -> list[_Node]:
-    """Start, both ends of every section that is slower than its neighbours, goal."""
-    padded = np.concatenate([[np.inf], caps, [np.inf]])
-    slow = np.flatnonzero((caps < padded[:-2]) & (caps <= padded[2:]) | (caps <= padded[:-2]) & (caps < padded[2:]))
-    rest = np.zeros(1)
-    nodes = [_Node(0.0, 0.0, rest, rest)]
-    borders = np.concatenate([[0.0], ends])
-    length = float(ends[-1])
-    for m in slow.tolist():
-        for k in (m, m + 1):
-            s = float(borders[k])
-            if not nodes[-1].s + SAME_PLACE < s < length - SAME_PLACE:
-                continue
-            at = float(clock(relaxed, np.array([s]))[0])
-            reachable = float(relaxed.state([at])[0, 1]) * (1 + 1e-9) + 1e-6
-            speed = min(float(min(caps[k - 1], caps[k])), reachable)
-            nodes.append(_node(s, speed, limits))
-    nodes.append(_Node(length, 0.0, rest, rest))
-    return nodes
-
-
-def _node(s: float, speed: float, limits: Limits) -> _Node:
-    """Cells of all accelerations with which a robot can pass that neither stops at once nor has just started."""
-    most = math.sqrt(2 * limits.jerk * speed)
-    edges = np.linspace(-min(limits.deceleration, most), min(limits.acceleration, most), _CELLS + 1)
-    return _Node(s, speed, edges[:-1], edges[1:])
-
-
-def _link(a: _Node, b: _Node, ends: Array, caps: Array, limits: Limits) -> _Link:
-    length = b.s - a.s
-    count = int(min(max(math.ceil(length / _STEP), 1), _MOST_PLACES))
-    borders = ends[(ends > a.s + SAME_PLACE) & (ends < b.s - SAME_PLACE)]
-    places = np.unique(np.concatenate([np.linspace(a.s, b.s, count + 1), borders]))
-    cap = caps[np.minimum(np.searchsorted(ends, (places[:-1] + places[1:]) / 2, side="right"), len(caps) - 1)]
-    top = float(caps.max())
-    since = _times(a.speed, a.high, np.diff(places), cap, limits.acceleration, limits.jerk, top)
-    until = _times(b.speed, -b.low, np.diff(places)[::-1], cap[::-1], limits.deceleration, limits.jerk, top)[:, ::-1]
-    times = (since[:, None, :] + until[None]).max(axis=2)
-    # from the one acceleration to the other takes time as well
-    np.maximum(times, (b.low[None] - a.high[:, None]) / limits.jerk, out=times)
-    np.maximum(times, (a.low[:, None] - b.high[None]) / limits.jerk, out=times)
-    return _Link(places, since, until, times)
-
-
-def _times(
-    speed: float, accelerations: Array, steps: Array, caps: Array, most: float, jerk: float, top: float
-) -> Array:
-    """Least times (n, P) at which the places after the steps (P-1,) are reached from a speed and accelerations (n,)."""
-    quickest = ramps(speed, accelerations, top, most, jerk)
-    n = len(accelerations)
-    if bool(np.all(caps >= top)):
-        return quickest.time(np.repeat(np.append(0.0, np.cumsum(steps))[None], n, axis=0))
-    times = np.zeros((n, len(steps) + 1))
-    for p, (step, cap) in enumerate(zip(steps.tolist(), caps.tolist(), strict=True)):
-        now = times[:, p : p + 1]
-        ramped = quickest.time(quickest.way(now) + step)
-        times[:, p + 1] = np.maximum(now + step / cap, ramped)[:, 0]
-    return times

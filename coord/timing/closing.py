@@ -32,6 +32,12 @@ _SHARE, _STEP, _GROWTH = 1e-3, 0.02, 4.0
 #: One question on the way up from the bound takes at most this share of all relaxations: a later arrival is easier.
 _A_QUESTION = 0.4
 
+#: So many times nothing may come of what seems possible: a later arrival seems so, too.
+_FAILURES = 2
+
+#: Relaxations with which it is asked whether no other choice can be better: often that is plain to see.
+_GLANCE = 3
+
 #: [1] As long as a step leaves less than this share of the gap, the next one is no larger.
 _MUCH = 0.8
 
@@ -143,33 +149,52 @@ def close_gap(
         chase.add(index)
     _from_below(chase, enough)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
-        others = chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best))
+        others = _other_sides(chase, 1.0)
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
     if is_real or chase.best is not best:
-        _halving(chase, enough)
+        _halving(chase, enough, is_best=decided)
     decided = decided or chase.is_closed(CLOSED)
     return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided)
 
 
+def _other_sides(chase: _Chase, share: float) -> Verdict:
+    """Whether anybody who passes some part on its other side could be earlier, with a share of all relaxations."""
+    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best), share)
+
+
+def is_plainly_best(
+    ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]], near: Sequence[int],
+    best: VelocityProfile,
+) -> bool:  # fmt: skip
+    """Whether a glance shows that no other choice of before and after saves more than the share CLOSED."""
+    chase = _Chase(ego, meetings, forbidden, best, ego.solo_bound)
+    chase.most = _GLANCE
+    for index in near:
+        chase.add(index)
+    return _other_sides(chase, 1.0).cannot
+
+
 def _from_below(chase: _Chase, enough: float) -> None:
     """Ask for arrivals from the bound up, in steps that grow where nothing comes of it, until the gap is small."""
-    step = _SHARE * chase.bound + _STEP
-    while not chase.is_spent and not chase.is_closed(enough):
+    step, failures = _SHARE * chase.bound + _STEP, 0
+    while failures < _FAILURES and not chase.is_spent and not chase.is_closed(enough):
         arrival = chase.bound + step
         if arrival >= chase.best.arrival * (1 - CLOSED):
             return
         verdict = chase.asked(arrival, share=_A_QUESTION)
         gap = chase.best.arrival - chase.bound
-        if verdict.cannot or not chase.follow(verdict) or chase.best.arrival - chase.bound > _MUCH * gap:
+        failed = not verdict.cannot and not chase.follow(verdict)
+        failures += failed
+        if verdict.cannot or failed or chase.best.arrival - chase.bound > _MUCH * gap:
             step *= _GROWTH
 
 
-def _halving(chase: _Chase, enough: float) -> None:
+def _halving(chase: _Chase, enough: float, *, is_best: bool) -> None:
     """Raise the bound towards the arrival, halving what is between a time that is proved and one that is not."""
     high = chase.best.arrival
-    arrival = high * (1 - CLOSED)
+    arrival = high * (1 - CLOSED) if is_best else (chase.bound + high) / 2
     while not chase.is_spent and not chase.is_closed(enough) and high - chase.bound > _RESOLVED * high:
         if not chase.asked(arrival).cannot:
             high = arrival

@@ -61,13 +61,24 @@ def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
     return Ego(robot, path, caps, alone, min(bound, alone.arrival), launch(top), landing(top), relaxed, bends)
 
 
+def sharpened(one: Ego, rounds: int) -> Ego:
+    """The same with tighter bounds of what bends cost, which take some tens of milliseconds; see ``passages``."""
+    bends = passages(one.path, one.robot.limits, one.relaxed, rounds)
+    if bends is None:
+        return one
+    bound = min(max(one.solo_bound, one.robot.release + bends.total), one.alone.arrival)
+    return dataclasses.replace(one, bends=bends, solo_bound=bound)
+
+
 def earliest(one: Ego, s: Array) -> Array:
     """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]."""
-    later = 0.0 if one.bends is None else one.bends.later(s)
-    return one.alone.departure + np.maximum(one.launch.time(s), clock(one.relaxed, s) + later)
+    clocks = clock(one.relaxed, s)
+    clocks = clocks if one.bends is None else one.bends.earliest(s, clocks)
+    return one.alone.departure + np.maximum(one.launch.time(s), clocks)
 
 
 def still_needed(one: Ego, s: Array) -> Array:
     """The least times (m,) [s] that it still needs from the arc lengths s (m,) [m] to rest at its goal."""
-    longer = 0.0 if one.bends is None else one.bends.longer(s)
-    return np.maximum(one.landing.time(one.length - s), one.relaxed.arrival - clock(one.relaxed, s) + longer)
+    left = one.relaxed.arrival - clock(one.relaxed, s)
+    left = left if one.bends is None else one.bends.needed(s, left)
+    return np.maximum(one.landing.time(one.length - s), left)

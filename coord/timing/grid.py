@@ -18,7 +18,7 @@ from coord.alone.speed_limit import SpeedLimit
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
-from coord.solvers.linear import SIZES, Cells
+from coord.solvers.linear import LARGE_SIZES, SIZES, Cells
 from coord.timing.tube import Tube, lower_on_cells, upper_on_cells
 from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN, SAME_PLACE
 
@@ -31,6 +31,9 @@ _LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
 
 #: On long stretches without an event cells may last this share of the stretch.
 _OF_STRETCH = 1 / 40
+
+#: Grids whose cells are scaled by no more than this may have many more of them.
+FINEST = 0.03
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6
@@ -105,7 +108,8 @@ def time_knots(
         is_taken = any(a < middle < b for a, b in spans)
         longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
-    size = next((size for size in SIZES if size >= len(times) - 1), None)
+    sizes = LARGE_SIZES if mesh <= FINEST else SIZES
+    size = next((size for size in sizes if size >= len(times) - 1), None)
     if size is None:
         return None
     while len(times) - 1 < size:

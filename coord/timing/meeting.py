@@ -7,14 +7,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from coord.alone.inverse import time_at
-from coord.conflicts.region import ConflictRegion
-from coord.conflicts.window import Window, stay_within, window
+from coord.conflicts.region import ConflictRegion, refined
+from coord.conflicts.window import BEND, Window, stay_within, window
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.timing.clear import Excess, excess
 
 #: A window is looked at roughly in so many spans of its strips.
 _SPANS = 16
+
+#: In a refined window cells and what is lost to bent motions are so many times as large.
+_FINER = 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ class Meeting:
     """A conflict region with the motion of the other robot through it.
 
     ``box`` : earliest and latest time [s] at which the other is in the region, least and largest forbidden
-    arc length [m] of ego.
+    arc length [m] of ego. ``bend`` : by how much [m] the window's lines may miss the other's motion.
     """
 
     region: ConflictRegion
@@ -40,6 +43,7 @@ class Meeting:
     profile: VelocityProfile
     ends: Ends
     length: float
+    bend: float = BEND
     box: tuple[float, float, float, float] = field(init=False)
     _window: Window | None = field(init=False, default=None)
     _spans: tuple[Array, Array, Array] | None = field(init=False, default=None)
@@ -57,11 +61,17 @@ class Meeting:
         """The forbidden arc lengths over time."""
         if self._window is None:
             ends = self.ends
-            raw = window(self.region, self.other, self.profile, waits=ends.other_waits, parks=ends.other_parks)
+            waits, parks = ends.other_waits, ends.other_parks
+            raw = window(self.region, self.other, self.profile, waits=waits, parks=parks, bend=self.bend)
             if raw is None:  # the other never gets there: a window of no width
                 raw = Window(self.other, np.array([0.0, 1.0]), np.array([[np.inf] * 2]), np.array([[-np.inf] * 2]))
             self._window = stay_within(raw, ends.start_free, ends.goal_free, self.length)
         return self._window
+
+    def refined(self) -> Meeting:
+        """The same with a window that is nearer to the truth, by millimetres, and takes several times as long."""
+        region = refined(self.region, _FINER)
+        return Meeting(region, self.other, self.profile, self.ends, self.length, _FINER * self.bend)
 
     def is_avoided(self, profile: VelocityProfile) -> bool:
         """Whether a look at the box alone shows that a profile does not meet the other here."""

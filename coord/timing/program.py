@@ -25,11 +25,12 @@ from coord.timing.rounds import Settled, first_guess, is_hopeless, rounds
 from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
-#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow.
-_MESHES = (1.0, 0.4, 0.16, 0.07)
+#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow. The finest are for tubes
+#: that nothing else decides.
+_MESHES, _FINER_MESHES = (1.0, 0.4, 0.16, 0.07), (0.03, 0.015)
 
-#: [1] A finer grid is worth its while as long as this share of the arrival may be gained.
-_FINER = 5e-4
+#: [1] A finer grid is worth its while as long as this share of the arrival may be gained; with bends it costs more.
+_FINER, _FINER_IN_BENDS = 5e-4, 1e-3
 
 #: [s] The search for the arrival ends when it rises by less than this.
 _ARRIVAL_STEP = 2e-3
@@ -48,7 +49,7 @@ _CORRECTIONS = 2
 
 
 def through_tube(
-    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None
+    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, fine: bool = False
 ) -> VelocityProfile | None:
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
 
@@ -59,18 +60,21 @@ def through_tube(
     Parameters
     ----------
     course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
+    fine : whether a narrow tube is worth the finest grids.
     """
     if not ego.caps.is_constant:
         return None if course is None else _round_bends(ego, tube, least, most, course)
     best = None
-    for mesh in _MESHES:
+    for mesh in (*_MESHES, *_FINER_MESHES) if fine else _MESHES:
         attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
         profile = _through(attempt, least, most)
-        if profile is not None and (best is None or profile.arrival < best.arrival):
+        gains = 0.0 if profile is None else 1.0 if best is None else best.arrival / profile.arrival - 1
+        if gains > 0:
             best = profile
+        if best is not None:
             most = best.arrival * (1 - _FINER)
-        if best is not None and best.arrival <= least * (1 + _FINER):
-            break
+            if best.arrival <= least * (1 + _FINER) or (mesh in _FINER_MESHES and gains < _FINER):
+                break
     return best
 
 
@@ -150,7 +154,7 @@ def _round_bends(ego: Ego, tube: Tube, least: float, most: float, course: Course
         for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first):
             settled = found
             if settled.is_near:
-                if not is_last and settled.arrival > least * (1 + _FINER):
+                if not is_last and settled.arrival > least * (1 + _FINER_IN_BENDS):
                     break
                 profile = _fitting(attempt, most, settled, _PAUSES[:2])
                 if profile is not None:

@@ -171,7 +171,8 @@ def _earliest(ego: Ego, times: Array) -> Array:
         return np.asarray(high)
     at = clock(relaxed, ego.bends.places)
     k = np.maximum(np.searchsorted(at + ego.bends.late, t, side="right") - 1, 0)
-    return np.asarray(np.minimum(high, np.minimum(t - ego.bends.late[k], np.append(at, np.inf)[k + 1])))
+    high = np.minimum(high, np.minimum(t - ego.bends.late[k], np.append(at, np.inf)[k + 1]))
+    return np.asarray(np.minimum(high, clock(relaxed, ego.bends.reached(t))))
 
 
 def _latest(ego: Ego, arrival: float, times: Array) -> Array:
@@ -184,7 +185,8 @@ def _latest(ego: Ego, arrival: float, times: Array) -> Array:
     needed = relaxed.arrival - at + ego.bends.long  # falls along the way
     k = np.minimum(np.searchsorted(-needed, -left, side="left"), len(at) - 1)  # the first from which the time suffices
     low = np.maximum(low, np.append(0.0, at)[k])
-    return np.asarray(np.maximum(low, np.minimum(relaxed.arrival - left + ego.bends.long[k], at[k])))
+    low = np.maximum(low, np.minimum(relaxed.arrival - left + ego.bends.long[k], at[k]))
+    return np.asarray(np.maximum(low, clock(relaxed, ego.bends.due(left))))
 
 
 def _way(ramp: Ramp, times: Array) -> Array:

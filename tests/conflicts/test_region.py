@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coord.conflicts.chords import chords
-from coord.conflicts.region import conflict_regions
+from coord.conflicts.region import conflict_regions, refined
 from coord.model.path import Path, straight
 from coord.tolerances import REGION_MARGIN
 
@@ -157,3 +157,19 @@ def test_a_larger_distance_forbids_more(wild_path, regions, distances, forbidden
         s, sigma = np.linspace(0, ego.length, 100)[1:-1], np.linspace(0, other.length, 100)[1:-1]
         less, more = (forbidden(regions(ego, other, reach + d), s, sigma) for d in (0.0, 0.01))
         assert np.all(more[less])
+
+
+@pytest.mark.parametrize("kinds", [("line",), ("line", "arc", "clothoid")], ids="-".join)
+def test_refined_bounds_still_miss_nothing_and_forbid_less(wild_path, regions, distances, forbidden, kinds):
+    """40 pairs of random paths: what is too close stays forbidden, and less than half of what is not."""
+    rng = np.random.default_rng(3)
+    coarse = fine = 0
+    for _ in range(40):
+        ego, other, reach = wild_path(rng, kinds), wild_path(rng, kinds), rng.uniform(0.2, 1.2)
+        s, sigma = np.linspace(0, ego.length, 1200), np.linspace(0, other.length, 250)
+        close = distances(ego, other, s, sigma) < reach - 1e-9
+        found = regions(ego, other, reach)
+        nearer = forbidden([refined(region, 0.25) for region in found], s, sigma)
+        assert np.all(nearer[close])
+        coarse, fine = coarse + (forbidden(found, s, sigma) & ~close).sum(), fine + (nearer & ~close).sum()
+    assert fine < 0.5 * coarse

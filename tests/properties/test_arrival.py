@@ -94,11 +94,11 @@ def _library(*_, **__):
 
 #: Steps of the timing stage, and what they give when they fail.
 FAILURES = {
-    "splice": ("coord.timing.passing.spliced", lambda *_: []),
-    "program": ("coord.timing.passing.through_tube", lambda *_: None),
-    "program's library": ("coord.timing.passing.through_tube", _library),
-    "splice's library": ("coord.timing.passing.spliced", _library),
-    "branch and bound": ("coord.timing.passing._branch_and_bound", lambda _: (0, True)),
+    "splice": ("coord.timing.choices.spliced", lambda *_: []),
+    "program": ("coord.timing.choices.through_tube", lambda *_: None),
+    "program's library": ("coord.timing.choices.through_tube", _library),
+    "splice's library": ("coord.timing.choices.spliced", _library),
+    "branch and bound": ("coord.timing.passing.branch_and_bound", lambda _: (0, True)),
     "start delay": ("coord.timing.passing.start_delay", lambda *_: None),
     "everything": ("coord.coordination.prioritised.time_robot", lambda *_, **__: None),
 }
@@ -140,9 +140,9 @@ def test_everybody_arrives_where_the_library_fails_among_equally_early_profiles(
 
 #: Steps that are switched off one by one; a program is also sought where the gap to the bound is closed.
 SWITCHES = {
-    "splice": ("coord.timing.passing.spliced", "coord.timing.ties.spliced"),
-    "program": ("coord.timing.passing.through_tube", "coord.timing.closing.through_tube"),
-    "branch and bound": ("coord.timing.passing._branch_and_bound",),
+    "splice": ("coord.timing.choices.spliced", "coord.timing.ties.spliced"),
+    "program": ("coord.timing.choices.through_tube", "coord.timing.closing.through_tube"),
+    "branch and bound": ("coord.timing.passing.branch_and_bound",),
 }
 
 

@@ -15,7 +15,7 @@ from coord.model.footprint import Footprint
 from coord.model.path import Path, straight
 from coord.model.robot import Limits, Robot
 from coord.timing.bends import passages
-from coord.timing.ego import earliest, ego, still_needed
+from coord.timing.ego import earliest, ego, sharpened, still_needed
 
 
 def scene(seed, clothoids=True):
@@ -50,10 +50,12 @@ def some_motions(rng, one):
             yield slow
 
 
+@pytest.mark.parametrize("rounds", [0, 3])
 @pytest.mark.parametrize(("seed", "clothoids"), [*((k, False) for k in range(16)), (0, True), (3, True)])
-def test_no_motion_is_anywhere_earlier_or_has_less_to_go(seed, clothoids):
-    """Profiles of all sorts, alone on random ways with bends, at 400 places."""
+def test_no_motion_is_anywhere_earlier_or_has_less_to_go(seed, clothoids, rounds):
+    """Profiles of all sorts, alone on random ways with bends, at 400 places; however closely it is looked."""
     rng, one = scene(seed, clothoids)
+    one = sharpened(one, rounds)
     s = np.linspace(0.0, one.length, 400)
     early, still = earliest(one, s), still_needed(one, s)
     for motion in some_motions(rng, one):
@@ -61,6 +63,23 @@ def test_no_motion_is_anywhere_earlier_or_has_less_to_go(seed, clothoids):
         assert np.all(at + one.robot.release >= early - 1e-6)
         assert np.all(motion.arrival - at >= still - 1e-6)
         assert motion.arrival + one.robot.release >= one.solo_bound
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_reached_and_due_are_the_inverses(seed):
+    """A little short of the last place reached by a time the least time is no later, a little beyond it no earlier."""
+    _, one = scene(seed, clothoids=False)
+    long_ago = np.full(200, -1e3)
+    times = np.linspace(0.0, one.bends.total, 200)
+    for places, needed, sign in (
+        (one.bends.reached(times), one.bends.earliest, 1.0),
+        (one.bends.due(times), one.bends.needed, -1.0),
+    ):
+        assert np.all(needed(places - sign * 1e-9, long_ago) <= times + 1e-6)
+        beyond = places + sign * 1e-9
+        inside = (beyond > 0) & (beyond < one.length)
+        assert inside.sum() > 50
+        assert np.all(needed(beyond, long_ago)[inside] >= times[inside] - 1e-6)
 
 
 @pytest.mark.parametrize("crawl", [0.05, 0.1, 0.2, 0.3])
@@ -88,6 +107,17 @@ def test_the_quickest_profile_is_close_to_the_bound():
     assert np.quantile(with_jerk, 0.9) < 0.015
     assert np.median(with_jerk) < 0.003
     assert np.median(without) > 0.02
+
+
+def test_a_closer_look_leaves_a_third():
+    """Cells cut three times: of what the bounds lack of the quickest profile, on half the ways no more than a third."""
+    shares = []
+    for seed in range(20):
+        _, one = scene(seed, clothoids=False)
+        lacks = [one.alone.arrival - sharpened(one, rounds).solo_bound for rounds in (0, 3)]
+        assert lacks[1] <= lacks[0] + 1e-9
+        shares.append(lacks[1] / lacks[0])
+    assert np.median(shares) < 1 / 3
 
 
 def test_with_jerk_all_but_free_bends_cost_no_more_than_without_it():

@@ -35,7 +35,7 @@ def test_no_random_motion_is_ahead_of_the_ramp(seed):
     for _ in range(200):
         v = float(rng.uniform(0.0, TOP))
         a = float(rng.uniform(-min(MOST, np.sqrt(2 * JERK * v)), min(MOST, np.sqrt(2 * JERK * (TOP - v)))))
-        quickest = ramps(v, np.array([a]), TOP, MOST, JERK)
+        quickest = ramps(np.array([v]), np.array([a]), TOP, MOST, JERK)
         w = v * rng.uniform(0.9, 1.0)
         slower = wander(rng, w, max(a - rng.uniform(0.0, 0.2), -MOST, -np.sqrt(2 * JERK * w)) if a > 0 else a)
         times = 0.1 * np.arange(len(slower))
@@ -45,7 +45,7 @@ def test_no_random_motion_is_ahead_of_the_ramp(seed):
 
 def test_the_table_of_times_is_short_by_less_than_a_millisecond():
     """The way of a ramp, asked back for its time."""
-    quickest = ramps(0.5, np.linspace(-0.8, 0.8, 33), TOP, MOST, JERK)
+    quickest = ramps(np.full(33, 0.5), np.linspace(-0.8, 0.8, 33), TOP, MOST, JERK)
     times = np.repeat(np.linspace(0.0, 6.0, 500)[None], 33, axis=0)
     back = quickest.time(quickest.way(times))
     assert np.all(back <= times + 1e-9)
@@ -54,5 +54,5 @@ def test_the_table_of_times_is_short_by_less_than_a_millisecond():
 
 def test_a_ramp_at_full_speed_stays_there():
     """Whatever acceleration it is offered."""
-    quickest = ramps(TOP, np.array([0.0, 0.5]), TOP, MOST, JERK)
+    quickest = ramps(np.full(2, TOP), np.array([0.0, 0.5]), TOP, MOST, JERK)
     assert quickest.way(np.array([[2.0], [2.0]])) == pytest.approx(2 * TOP)
