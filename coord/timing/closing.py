@@ -144,7 +144,7 @@ def close_gap(
     is_real : whether the profile can be driven, or only stands for one that is sought: then the bound is of no use.
     """
     chase = _Chase(ego, meetings, forbidden, best, bound)
-    chase.most, chase.fine = most, enough <= CLOSED
+    chase.most, chase.fine = most, enough <= CLOSED or not decided
     for index in near:
         chase.add(index)
     _from_below(chase, enough)
@@ -153,8 +153,8 @@ def close_gap(
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
-    if is_real or chase.best is not best:
-        _halving(chase, enough, is_best=decided)
+    if (decided or enough <= CLOSED) and (is_real or chase.best is not best):
+        _halving(chase, enough)
     decided = decided or chase.is_closed(CLOSED)
     return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided)
 
@@ -191,10 +191,10 @@ def _from_below(chase: _Chase, enough: float) -> None:
             step *= _GROWTH
 
 
-def _halving(chase: _Chase, enough: float, *, is_best: bool) -> None:
+def _halving(chase: _Chase, enough: float) -> None:
     """Raise the bound towards the arrival, halving what is between a time that is proved and one that is not."""
     high = chase.best.arrival
-    arrival = high * (1 - CLOSED) if is_best else (chase.bound + high) / 2
+    arrival = high * (1 - CLOSED)
     while not chase.is_spent and not chase.is_closed(enough) and high - chase.bound > _RESOLVED * high:
         if not chase.asked(arrival).cannot:
             high = arrival
