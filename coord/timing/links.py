@@ -31,7 +31,7 @@ _SHORT, _SHORT_PARTS = 0.5, 4
 _MEETINGS = 16
 
 #: [m/s] Slower is as good as standing.
-SLOWEST = 1e-9
+_SLOWEST = 1e-9
 
 #: Pieces with varying curvature are cut into this many: in each the highest cap holds, since a bound must not be tight.
 _CUTS = 16
@@ -234,5 +234,5 @@ def _times(
             at[:, p + 1] = np.maximum(now + step / cap, ramped)[:, 0]
     # who gains speed is nowhere before the straight line; who loses some no faster than at one of both ends
     fast = quickest.speed(at)
-    slower = at[:, :-1] + steps / np.maximum(np.maximum(fast[:, :-1], fast[:, 1:]), SLOWEST)
+    slower = at[:, :-1] + steps / np.maximum(np.maximum(fast[:, :-1], fast[:, 1:]), _SLOWEST)
     return _Times(at, np.where(at[:, :-1] < quickest.dips[:, None], np.minimum(slower, at[:, 1:]), at[:, 1:]))

@@ -70,9 +70,9 @@ def time_robot(
     if first_violated(meetings, ego.alone) is None:
         return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
     found = _found(ego, meetings, certify=certify, hurried=hurried)
-    if found.is_loose:
+    if found.is_loose and not hurried:
         finer = [meeting.refined() for meeting in meetings]
-        found = found.or_rather(_found(ego, finer, certify=certify, hurried=hurried, is_last=True))
+        found = found.or_rather(_found(ego, finer, certify=certify, is_last=True))
     search = found.search
     if search.how == _NONE:
         return None
@@ -85,30 +85,25 @@ def time_robot(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Found:
-    """The end of a search: its certified bound [s], how many subproblems were looked at, and whether some is open.
-
-    ``is_enough`` : nothing better is asked for.
-    """
+    """The end of a search: its certified bound [s], how many subproblems were looked at, and whether some is open."""
 
     search: Search
     bound: float
     nodes: int
     is_open: bool
-    is_enough: bool = False
 
     @property
     def is_loose(self) -> bool:
         """Whether windows that are nearer to the truth may gain something worth their cost."""
-        if self.is_enough:
-            return False
         gap = 1 - self.bound / self.search.best.arrival
         return self.is_open or gap > (CLOSED if self.search.ego.caps.is_constant else _EFFORTS[0][1])
 
     def or_rather(self, other: _Found) -> _Found:
-        """The earlier of both, with what both have shown: none is proved to be late by the other's proof alone."""
+        """The earlier of both, with what both have shown; the later one's choices say nothing if it is much later."""
         first, later = (other, self) if other.search.best.arrival < self.search.best.arrival else (self, other)
-        bound = max(self.bound, other.bound)
-        return _Found(first.search, bound, self.nodes + other.nodes, first.is_open and later.is_open)
+        is_close = first.search.best.arrival >= later.search.best.arrival * (1 - CLOSED)
+        is_open = first.is_open and (later.is_open or not is_close)
+        return _Found(first.search, max(self.bound, other.bound), self.nodes + other.nodes, is_open)
 
 
 def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = False, is_last: bool = False) -> _Found:
@@ -123,13 +118,13 @@ def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = 
     search = Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts, is_last=is_last)
     nodes, is_open = branch_and_bound(search)
     if hurried and search.how != _NONE:
-        return _Found(search, ego.solo_bound, nodes, True, is_enough=True)
+        return _Found(search, ego.solo_bound, nodes, True)
     bound, near = _certified(search, OPTIMAL if certify or ego.caps.is_constant else CLOSED)
     if bound < search.best.arrival * (1 - (CLOSED if is_open else _EFFORTS[0][1])) and search.sharpen():
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
     is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, near, search.best)
-    if is_open and not is_last:
+    if is_open and not is_last and not hurried:
         return _Found(search, bound, nodes, True)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
