@@ -144,6 +144,7 @@ def _planned(problem: Problem, options: Options, progress: Progress, time_is_up:
             method=options.method,
             certify=options.certify,
             together=dict(zip(found.together, settled.otherwise, strict=True)),
+            homeward=settled.homeward,
         )
         order = list(timings)
     return plan_of(problem, quickest, found, egos, order, timings)

@@ -45,11 +45,21 @@ _AROUND = 5.0
 _SKETCH = "taut"
 
 
-def with_bays(problem: Problem, found: Rerouting, shape: str, check_time: Callable[[], None]) -> Rerouting:
-    """Paths on which groups can leave together, as far as bays help; others are left as they are."""
+def with_bays(
+    problem: Problem,
+    found: Rerouting,
+    shape: str,
+    check_time: Callable[[], None],
+    at_ease: Collection[tuple[int, ...]] = (),
+) -> Rerouting:
+    """Paths on which groups can leave together, as far as bays help; others are left as they are.
+
+    ``at_ease`` : groups that come home on their paths.
+    """
     search = _Search(problem, rests(problem), shape, check_time, _MOST_LOOKS)
     for group in found.together:
-        found = search.untied(found, group)
+        if group not in at_ease:
+            found = search.untied(found, group)
     return found
 
 

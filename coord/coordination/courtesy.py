@@ -34,7 +34,8 @@ def courteous(scene: Scene, i: int, timing: Timing, meetings: list[Meeting], tim
     """
     if timing.how not in ("start delay", "splice"):
         return timing
-    later = [(scene.egos[k], scene.meetings(k, [i], {i: timing})) for k in scene.neighbours[i] if k not in timings]
+    after = [k for k in scene.neighbours[i] if k not in timings]
+    later = [(scene.egos[k], scene.meetings(k, [i], {i: timing}, remember=True)) for k in after]
     best, least = timing, _held_up(later, timing.profile)
     if later and least == (0, 0.0):
         return timing

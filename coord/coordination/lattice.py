@@ -8,7 +8,7 @@ who rests in whose way, and from which pairs of places both still come home.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal, TypeAlias
@@ -195,11 +195,13 @@ def _filled(reached: int, passable: int, count: int) -> int:
     return reached
 
 
-def _bits(rows: Iterable[npt.NDArray[np.bool_]]) -> Bits:
-    return tuple(int.from_bytes(np.packbits(row, bitorder="little").tobytes(), "little") for row in rows)
+def _bits(rows: _Table) -> Bits:
+    packed = np.packbits(rows, axis=1, bitorder="little")
+    size, whole = packed.shape[1], packed.tobytes()
+    return tuple(int.from_bytes(whole[at : at + size], "little") for at in range(0, len(whole), size))
 
 
 def _table(rows: Bits, count: int) -> _Table:
     size = (count + 7) // 8
-    whole = np.array([np.frombuffer(row.to_bytes(size, "little"), dtype=np.uint8) for row in rows])
+    whole = np.frombuffer(b"".join(row.to_bytes(size, "little") for row in rows), dtype=np.uint8).reshape(-1, size)
     return np.unpackbits(whole, axis=1, count=count, bitorder="little").astype(np.bool_)

@@ -8,7 +8,7 @@ away, the distance decides how exactly the two must hit the right moment.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from itertools import combinations
 
 import numpy as np
@@ -33,15 +33,20 @@ _PLACES, _TIMES = 7, 400
 
 
 def with_room_to_pass(
-    problem: Problem, found: Rerouting, shape: str, check_time: Callable[[], None] = lambda: None
+    problem: Problem,
+    found: Rerouting,
+    shape: str,
+    check_time: Callable[[], None] = lambda: None,
+    at_ease: Collection[tuple[int, ...]] = (),
 ) -> Rerouting:
     """Paths on which no two robots that have to leave together are separated, as far as there are such paths.
 
     Of each separated pair the robot goes round the other that loses less time; robots whose paths are given stay on
-    them. A new path runs over no place where others rest that the old one did not run over.
+    them. A new path runs over no place where others rest that the old one did not run over. ``at_ease`` : groups
+    that come home on their paths.
     """
     known = rests(problem)
-    for i, k in separated_pairs(problem, found):
+    for i, k in separated_pairs(problem, found, at_ease):
         shares = ((1.0, 0.0), (0.0, 1.0), (0.5, 0.5))
         options = [_apart(known, found, (i, k), share, shape, check_time) for share in shares]
         if not any(options):
@@ -129,9 +134,14 @@ def _abreast(
     return None if changed is None or is_separated(known.problem, changed, driving, other) else changed
 
 
-def separated_pairs(problem: Problem, found: Rerouting) -> list[tuple[int, int]]:
-    """Pairs of robots that have to leave together and cannot pass each other on their paths."""
-    pairs = (pair for group in found.together for pair in combinations(group, 2))
+def separated_pairs(
+    problem: Problem, found: Rerouting, at_ease: Collection[tuple[int, ...]] = ()
+) -> list[tuple[int, int]]:
+    """Pairs of robots that have to leave together and cannot pass each other on their paths.
+
+    ``at_ease`` : groups that come home on their paths.
+    """
+    pairs = (pair for group in found.together if group not in at_ease for pair in combinations(group, 2))
     return [(i, k) for i, k in pairs if is_separated(problem, found, i, k)]
 
 

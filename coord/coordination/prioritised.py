@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from coord.coordination import diagnose
 from coord.coordination.courtesy import courteous
+from coord.coordination.homeward import Homeward
 from coord.coordination.scene import Scene
 from coord.coordination.together import plan_together
 from coord.errors import NoPlanError, SolverError
@@ -26,6 +27,7 @@ def plan_in_order(
     method: str = "velocity",
     certify: bool = False,
     together: Mapping[tuple[int, ...], Diagnosis] | None = None,
+    homeward: Mapping[tuple[int, ...], Homeward] | None = None,
 ) -> dict[int, Timing]:
     """A profile for every robot, each against those before it in an order that respects the blocking arcs.
 
@@ -39,7 +41,7 @@ def plan_in_order(
     method : "velocity" or "stop".
     certify : whether to spend the time to close the gap to each robot's certified bound, as in ``time_robot``.
     together : groups of robots that have to leave together, each planned when its first one is due; and what to say
-        where that fails.
+        where that fails. ``homeward`` : of some of them, moves that bring them home.
 
     Raises
     ------
@@ -63,7 +65,8 @@ def plan_in_order(
             continue
         if i in group_of:
             group = [k for k in order if k in group_of[i]]
-            found = plan_together(scene, group, timings, solve, check_time)
+            moves = (homeward or {}).get(group_of[i])
+            found = plan_together(scene, group, timings, solve, check_time, moves)
             if found is None:
                 stuck[group_of[i]] = (together or {})[group_of[i]]
             timings.update(found or {})
@@ -76,6 +79,7 @@ def plan_in_order(
         timings[i] = own or waiting(scene.egos[i], meetings)
         if method == "velocity":
             timings[i] = courteous(scene, i, timings[i], meetings, timings)
+        scene.forget(i)
         done(len(timings))
     if stuck:
         raise NoPlanError(stuck.values())

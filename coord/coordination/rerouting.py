@@ -21,6 +21,10 @@ from coord.model.route import Route
 #: Of robots that would open a ring equally well, so many ways round are compared by their times.
 _MOST_COMPARED = 8
 
+#: Ways round one place of a ring that are sought in all: where these are needed, there are many places, as a rule,
+#: and robots that go round one after the other of them still leave the ring shut.
+_MOST_ROUND_ONE = 60
+
 #: From so many robots of a ring that stays a short cycle is sought.
 _MOST_BEGINNINGS = 100
 
@@ -141,7 +145,10 @@ def _cycles(left: Sequence[Sequence[int]], blocks: Sequence[Block]) -> tuple[tup
 
 @dataclass(slots=True, eq=False)
 class _Search:
-    """Who is on which path while rings are opened; ``driven`` : the blocks that belong to each robot."""
+    """Who is on which path while rings are opened; ``driven`` : the blocks that belong to each robot.
+
+    ``left`` : ways round one place that may still be sought.
+    """
 
     problem: Problem
     routes: list[Route]
@@ -155,6 +162,7 @@ class _Search:
     ring_of: dict[int, tuple[int, ...]] = field(init=False, default_factory=dict)
     staying: dict[Block, bool] = field(init=False, default_factory=dict)
     ways: dict[tuple[int, frozenset[Block]], Way | None] = field(init=False, default_factory=dict)
+    left: int = field(init=False, default=_MOST_ROUND_ONE)
 
     def __post_init__(self, graph: Sequence[Block]) -> None:
         self.known, self.first = rests(self.problem), tuple(self.routes)
@@ -233,9 +241,15 @@ class _Search:
         return self._way(i, everybody) or self._way(i, movable)
 
     def _round_one(self, i: int, movable: frozenset[Block]) -> Way | None:
-        """Round one place of the ring."""
-        ways = (self._way(i, frozenset([block])) for block in sorted(movable, key=in_order))
-        return next((way for way in ways if way is not None), None)
+        """Round one place of the ring; in large problems not as often as there are places."""
+        for block in sorted(movable, key=in_order):
+            if self.left <= 0:
+                return None
+            self.left -= 1
+            way = self._way(i, frozenset([block]))
+            if way is not None:
+                return way
+        return None
 
     def _way(self, i: int, gone: frozenset[Block]) -> Way | None:
         """A path without these blocks, without those that are gone already, and without any that there never were."""

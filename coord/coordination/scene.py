@@ -46,6 +46,11 @@ class Scene:
             found += [Meeting(region, k, timings[k].profile, ends, length) for region in regions]
         return found
 
+    def forget(self, i: int) -> None:
+        """Let go of where robot i meets others: it has its profile."""
+        for k in self.neighbours[i]:
+            self.regions.pop((i, k), None)
+
 
 def scene_of(egos: Sequence[Ego], reaches: Sequence[float], blocks: Iterable[Block], clearance: float) -> Scene:
     """The scene of robots that reach so far [m] from their paths, their share of the clearance included."""

@@ -21,6 +21,7 @@ from coord.conflicts.chords import chords
 from coord.conflicts.core import conflict_core
 from coord.conflicts.region import conflict_regions
 from coord.conflicts.rest import runs_over
+from coord.coordination.homeward import Homeward
 from coord.coordination.lattice import Floor, lattice_of
 from coord.coordination.moves import MOST_STATES, moves_home
 from coord.coordination.scene import Scene
@@ -41,19 +42,28 @@ _SMALL, _MOST_FIRST = 4, 6
 #: Places of a path among which the nearest to a point is sought.
 _SAMPLES = 400
 
+#: A robot with so many meetings takes long: where moves are known anyway, it counts as so many robots planned.
+_MANY, _DEAR = 32, 30
+
 #: Larger groups that have moves home do without deadlines.
 _MOST_WITH_DEADLINES = 8
 
 #: How often each robot of a group may be planned on average while deadlines are sought: of two, of more, and where
-#: the lattice has no moves home. How often all of a group while a plan is improved.
-_MOST_OF_TWO, _MOST_TRIES, _FEW_TRIES, _MOST_ANEW = 30, 4, 2, 60
+#: the lattice has no moves home. How often all of a group while a plan is improved; of a large one, each time it is
+#: planned against so many others, so often that it meets this many.
+_MOST_OF_TWO, _MOST_TRIES, _FEW_TRIES, _MOST_ANEW, _MOST_MEETINGS = 30, 4, 2, 60, 840
 
 #: What came of a robot, against the profiles of those near it and these deadlines: rounds and orders often ask again.
 _Memory: TypeAlias = dict[tuple[int, tuple[VelocityProfile, ...], tuple[tuple[int, float], ...]], Timing | None]
 
 
 def plan_together(
-    scene: Scene, group: Sequence[int], timings: Mapping[int, Timing], solve: Solve, check_time: Callable[[], None]
+    scene: Scene,
+    group: Sequence[int],
+    timings: Mapping[int, Timing],
+    solve: Solve,
+    check_time: Callable[[], None],
+    homeward: Homeward | None = None,
 ) -> dict[int, Timing] | None:
     """Profiles for all robots of a group, in the order of their arrivals; None where none were found.
 
@@ -66,12 +76,16 @@ def plan_together(
     group : robots that stand in each other's way in a ring; planned in this order, or with another of them first.
     timings : of the robots planned before.
     check_time : called before each robot; may raise.
+    homeward : moves that bring the group home, where they are known: then nothing else is sought.
     """
+    if homeward is not None:
+        slow = in_turns(scene, homeward.group, homeward.lattice, homeward.moves, timings)
+        return improved(scene, slow, timings, solve, check_time, _MOST_MEETINGS // len(group))
     floor = Floor([one.robot for one in scene.egos], [one.path for one in scene.egos], scene.blocked, scene.clearance)
     lattice = lattice_of(floor, group)
     moves, is_whole = (None, False) if lattice is None else moves_home(lattice, MOST_STATES)[:2]
     tries = _MOST_OF_TWO if len(group) == 2 else _FEW_TRIES if moves is None and is_whole else _MOST_TRIES
-    search = _Search(scene, timings, solve, check_time, tries * len(group))
+    search = _Search(scene, timings, solve, check_time, tries * len(group), 1 if moves is None else _DEAR)
     plan = None if len(group) > _MOST_WITH_DEADLINES and moves is not None else _with_deadlines(search, group)
     if plan is not None and len(group) == 2:
         return told(scene, plan, timings)
@@ -84,13 +98,17 @@ def plan_together(
 
 @dataclass(slots=True, eq=False)
 class _Search:
-    """What the attempts with deadlines share; ``left`` : how many robots may still be planned in all of them."""
+    """What the attempts with deadlines share.
+
+    ``left`` : how many robots may still be planned in all of them; ``dear`` : as how many one counts that meets many.
+    """
 
     scene: Scene
     timings: Mapping[int, Timing]
     solve: Solve
     check_time: Callable[[], None]
     left: int
+    dear: int
     memory: _Memory = field(default_factory=dict)
 
 
@@ -143,9 +161,9 @@ def _timed(
     waits = [(k, deadlines[i, k]) for k in group if (i, k) in deadlines and k not in timings]
     key = i, tuple(timings[k].profile for k in near), tuple(sorted(waits))
     if key not in search.memory:
-        search.left -= 1
         away = [meeting for k, deadline in waits for meeting in _kept_away(search.scene, i, k, deadline)]
         meetings = search.scene.meetings(i, near, timings, remember=True) + away
+        search.left -= search.dear if len(meetings) >= _MANY else 1
         search.memory[key] = search.solve(search.scene.egos[i], meetings, hurried=True)
     return search.memory[key]
 

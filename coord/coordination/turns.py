@@ -1,8 +1,8 @@
 """From moves of one robot at a time to motions of all: everybody goes as soon as those it crosses have gone.
 
-Each move becomes a motion from rest to rest, begun once the robot has done its own moves before, and all others have
-done those moves before that must not happen at the same time. That is a plan, if a slow one. Then every robot in turn
-is planned anew against the motions of all others, which makes no other later, until little is gained.
+Each move becomes a motion from rest to rest, begun once the robot has done its own moves before, and so late that it
+comes to no place before all have left it that were to be there earlier. That is a plan, if a slow one. Then every robot
+in turn is planned anew against the motions of all others, which makes no other later, until little is gained.
 """
 
 from __future__ import annotations
@@ -12,9 +12,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
+import numpy as np
+
+from coord.alone.inverse import time_at
 from coord.coordination.lattice import Lattice
 from coord.coordination.moves import Move
 from coord.coordination.scene import Scene
+from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.timing.ego import Ego
 from coord.timing.legs import braked, followed, last_moment, onward
@@ -23,6 +27,9 @@ from coord.timing.passing import Timing, passed
 
 #: Rounds in which every robot is planned anew, at most; and they end when one saves less than this share.
 _ROUNDS, _LITTLE = 4, 2e-3
+
+#: [s] Between one robot's leaving a cell and another's entering one: times near a stop are good to about 1e-5 s.
+_APART = 1e-3
 
 #: [robots] Larger groups are planned in a hurry only.
 _SMALL = 8
@@ -50,27 +57,33 @@ def in_turns(
     before = [timings[k].profile.arrival for i in group for k in scene.neighbours[i] if k in timings]
     first = max(before, default=0.0)
     ways: list[VelocityProfile | None] = [None] * len(group)
-    done: list[tuple[Move, float]] = []
+    done: list[tuple[Move, Array]] = []
     for move in moves:
         n = move.robot
-        ego, way = scene.egos[group[n]], ways[n]
-        crossed = (end for other, end in done if _crosses(lattice, move, other))
-        leaves = max(first, ego.alone.departure if way is None else way.arrival, *crossed)
-        place = 0.0 if way is None else way.length
-        leg = onward(ego, place, leaves)
-        stop = float(lattice.places[n][move.end])
-        if move.end < len(lattice.places[n]) - 1:
-            leg = braked(leg, last_moment(leg, stop, ego.robot.limits), ego.robot.limits)
+        ego, way, places = scene.egos[group[n]], ways[n], lattice.places[n]
+        ready = max(first, ego.alone.departure if way is None else way.arrival)
+        leg = onward(ego, 0.0 if way is None else way.length, ready)
+        if move.end < len(places) - 1:
+            leg = braked(leg, last_moment(leg, float(places[move.end]), ego.robot.limits), ego.robot.limits)
+        enters = time_at(leg, places[move.start : move.end])
+        waits = (_late(lattice, move, enters, other, leaves) for other, leaves in done)
+        leg = leg.shifted(max(waits, default=0.0))
         ways[n] = followed(way, leg)
-        done.append((move, leg.arrival))
+        done.append((move, time_at(leg, places[move.start + 1 : move.end + 1])))
     found = {i: way for i, way in zip(group, ways, strict=True) if way is not None}
     return {i: Timing(way, (), (), "stop", scene.egos[i].solo_bound, open=True) for i, way in found.items()}
 
 
-def _crosses(lattice: Lattice, move: Move, other: Move) -> bool:
-    """Whether one of two moves has to end before the other begins."""
-    table = lattice.crossed.get((move.robot, other.robot))
-    return table is not None and bool(table[move.start : move.end, other.start : other.end].any())
+def _late(lattice: Lattice, move: Move, enters: Array, other: Move, leaves: Array) -> float:
+    """By how much a move has to begin later [s] to enter no cell that it must not share before another left its own.
+
+    ``enters`` : when the one would enter its cells [s]; ``leaves`` : when the other leaves its own.
+    """
+    table = lattice.crossed.get((other.robot, move.robot))
+    if table is None:
+        return 0.0
+    first, second = np.nonzero(table[other.start : other.end, move.start : move.end])
+    return max(float((leaves[first] - enters[second]).max()) + _APART, 0.0) if len(first) else 0.0
 
 
 def improved(

@@ -105,13 +105,19 @@ def way_round(
 
 
 def way_through(
-    known: Rests, driving: int, route: Route, allowed: Set[Block], shape: str, via: tuple[Point, ...]
+    known: Rests,
+    driving: int,
+    route: Route,
+    allowed: Set[Block],
+    shape: str,
+    via: tuple[Point, ...],
+    also: Sequence[Obstacle] = (),
 ) -> Way | None:
     """The same for a robot that has places to pass, whatever it had before."""
     robots = [*known.problem.robots]
     robots[driving] = dataclasses.replace(robots[driving], via=via)
     changed = dataclasses.replace(known, problem=dataclasses.replace(known.problem, robots=tuple(robots)))
-    return way_round(changed, driving, route, allowed, shape)
+    return way_round(changed, driving, route, allowed, shape, also)
 
 
 def _inside(places: Array, low: Array, high: Array, reach: Array) -> npt.NDArray[np.bool_]:

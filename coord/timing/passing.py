@@ -22,6 +22,9 @@ from coord.tolerances import OPTIMAL
 #: arrival is left as it is. The second effort is made where proof is asked for.
 _EFFORTS = ((60, 5e-3), (600, CLOSED))
 
+#: Where more meetings came up than these, windows are not refined, and so many relaxations do.
+_FEW, _MOST_OF_MANY = 16, 20
+
 #: How a robot drives for which nothing has been found yet.
 _NONE = "none"
 
@@ -70,7 +73,7 @@ def time_robot(
     if first_violated(meetings, ego.alone) is None:
         return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
     found = _found(ego, meetings, certify=certify, hurried=hurried)
-    if found.is_loose and not hurried:
+    if found.is_loose and not hurried and len(found.search.known) <= _FEW:
         finer = [meeting.refined() for meeting in meetings]
         found = found.or_rather(_found(ego, finer, certify=certify, is_last=True))
     search = found.search
@@ -124,13 +127,14 @@ def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = 
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
     is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, near, search.best)
-    if is_open and not is_last and not hurried:
+    if is_open and not is_last and not hurried and len(search.known) <= _FEW:
         return _Found(search, bound, nodes, True)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
             closing = close_gap(
                 search.ego, meetings, search.forbidden, near, search.best, bound,
-                most=most, enough=enough, decided=not is_open, is_real=search.how != _NONE,
+                most=most if certify or len(near) <= _FEW else _MOST_OF_MANY, enough=enough,
+                decided=not is_open, is_real=search.how != _NONE,
             )  # fmt: skip
             bound, is_open = closing.bound, not closing.is_decided
             if closing.is_new:

@@ -6,12 +6,17 @@ import dataclasses
 
 import pytest
 
+from coord.coordination.blocking import reaches_of
+from coord.coordination.prioritised import plan_in_order
+from coord.coordination.scene import scene_of
 from coord.errors import SolverError
 from coord.model.footprint import Footprint
 from coord.model.options import Options
 from coord.model.problem import Problem, Workspace
 from coord.model.robot import Limits, Robot
+from coord.paths.routes import find_routes
 from coord.plan import plan
+from coord.timing.ego import ego
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 FLOOR = Workspace((-30.0, -30.0, 30.0, 30.0), 0.05)
@@ -39,6 +44,18 @@ def test_priorities_are_the_order_where_nothing_forbids_it(priorities):
     assert list(found.order) == [f"r{k}" for k in sorted(range(5), key=lambda k: priorities[k])]
     on_time = [one.robot.name for one in found.robots if one.arrival == one.solo_arrival]
     assert on_time == [found.order[0]]
+
+
+def test_where_robots_meet_is_forgotten_once_they_have_their_profiles():
+    """However many look ahead at whom they hold up: in the end no region is kept."""
+    problem = star(6)
+    egos = [ego(one, route.path, route.alone) for one, route in zip(problem.robots, find_routes(problem), strict=True)]
+    scene = scene_of(egos, reaches_of(problem.robots, 0.05), (), 0.05)
+    kept = []
+    timings = plan_in_order(scene, range(6), lambda done: kept.append(len(scene.regions)))
+    assert len(timings) == 6
+    assert max(kept) > 0
+    assert scene.regions == {}
 
 
 def test_a_robot_in_the_way_goes_first_whatever_its_priority():

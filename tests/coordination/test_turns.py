@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from coord.coordination.blocking import reaches_of
+from coord.coordination.blocking import Block, reaches_of
 from coord.coordination.lattice import Floor, lattice_of
-from coord.coordination.moves import moves_home
+from coord.coordination.moves import Move, moves_home
 from coord.coordination.prioritised import timing
 from coord.coordination.rerouting import without_rings
 from coord.coordination.scene import scene_of
@@ -54,6 +54,21 @@ def test_motions_in_turns_keep_their_distance_and_end_at_the_goals(ring):
     assert least_gap(scene, turns) >= 0.65 - 1e-6
     for i, one in turns.items():
         assert one.profile.length == pytest.approx(scene.egos[i].length, abs=1e-9)
+
+
+def test_whoever_follows_sets_off_before_the_one_ahead_has_arrived():
+    """Two robots in a row on one line, the first one's start on the other's way: the second leaves once that is free."""
+    ends = [((0.0, 0.0), (20.0, 0.0)), ((-2.0, 0.0), (15.0, 0.0))]
+    robots = tuple(Robot(f"r{k}", Footprint(0.3), LIMITS, start, goal) for k, (start, goal) in enumerate(ends))
+    problem = Problem("row", Workspace((-9.0, -9.0, 29.0, 9.0), 0.05, "stay"), robots)
+    egos = [ego(robot, route.path, route.alone) for robot, route in zip(robots, find_routes(problem), strict=True)]
+    blocks = [Block(0, 1, "start"), Block(1, 0, "goal")]
+    scene = scene_of(egos, reaches_of(robots, 0.05), blocks, 0.05)
+    lattice = lattice_of(Floor(robots, [one.path for one in egos], scene.blocked, 0.05), range(2))
+    moves = [Move(n, 0, len(lattice.places[n]) - 1) for n in range(2)]
+    turns = in_turns(scene, range(2), lattice, moves, {})
+    assert least_gap(scene, turns) >= 0.65 - 1e-6
+    assert turns[1].profile.departure < turns[0].profile.arrival / 2
 
 
 def test_improving_makes_nobody_later_and_much_better(ring):
