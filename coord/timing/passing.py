@@ -25,6 +25,9 @@ _EFFORTS = ((60, 5e-3), (600, CLOSED))
 #: Where more meetings came up than these, windows are not refined, and so many relaxations do.
 _FEW, _MOST_OF_MANY = 16, 20
 
+#: A bound is worked out from so many meetings at most.
+_MOST_MEETINGS = 24
+
 #: How a robot drives for which nothing has been found yet.
 _NONE = "none"
 
@@ -126,13 +129,15 @@ def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = 
     if bound < search.best.arrival * (1 - (CLOSED if is_open else _EFFORTS[0][1])) and search.sharpen():
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
-    is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, near, search.best)
+    is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, sorted(near), search.best)
     if is_open and not is_last and not hurried and len(search.known) <= _FEW:
         return _Found(search, bound, nodes, True)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
+            # a proof that no other choice is better needs them all
+            some = sorted(near if is_open else near[:_MOST_MEETINGS])
             closing = close_gap(
-                search.ego, meetings, search.forbidden, near, search.best, bound,
+                search.ego, meetings, search.forbidden, some, search.best, bound,
                 most=most if certify or len(near) <= _FEW else _MOST_OF_MANY, enough=enough,
                 decided=not is_open, is_real=search.how != _NONE,
             )  # fmt: skip
@@ -148,7 +153,7 @@ def _far_away(ego: Ego, meetings: list[Meeting]) -> VelocityProfile:
 
 
 def _certified(search: Search, enough: float) -> tuple[float, list[int]]:
-    """An arrival [s] that no motion can beat, and the meetings, by index, that are likely to hold ego up.
+    """An arrival [s] that no motion can beat, and the meetings that may hold ego up, those first that cost most.
 
     It comes from what is truly forbidden in the meetings that came up in the search, and where these leave much open,
     in all others that could hold ego up for longer. Leaving out a meeting never makes a bound too late, so they are
@@ -164,12 +169,13 @@ def _certified(search: Search, enough: float) -> tuple[float, list[int]]:
         for index, meeting in enumerate(search.meetings)
         if index not in search.known and could_hold_up(ego, meeting, ego.solo_bound)
     ]
-    for count, index in enumerate([*known, *further], start=1):
+    near = [*known, *further]
+    for count, index in enumerate(near[:_MOST_MEETINGS], start=1):
         claims += claims_of(ego, search.forbidden(index))
         bound = max(bound, least_arrival(ego, claims, arrival, known=fits))
         if bound >= arrival * (1 - (enough if count < len(known) else CLOSED)):
             break
-    return bound, sorted({*known, *further})
+    return bound, near
 
 
 def _finished(
