@@ -33,7 +33,7 @@ from coord.model.result import Diagnosis, Plan, Reroute
 from coord.model.route import Route
 from coord.paths.routes import find_routes
 from coord.timing.ego import Ego, ego
-from coord.timing.meeting import first_violated
+from coord.timing.meeting import first_run_into
 from coord.timing.passing import Timing
 from coord.timing.ties import equally_early
 
@@ -197,7 +197,7 @@ def _on(company: Company, i: int, route: Route, options: Options) -> _Joined:
         found = next(iter(equally_early(one, meetings, found)), found)
     if not late:
         found = found or waiting(one, meetings)
-    elif found is not None and first_violated(meetings, found.profile) is not None:
+    elif found is not None and first_run_into(meetings, found.profile) is not None:
         found = None  # no order promises that waiting helps
     return _Joined(i, route, one, found, tuple(block for block in blocks if block not in late), late)
 

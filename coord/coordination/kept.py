@@ -26,7 +26,7 @@ from coord.model.result import Plan, RobotPlan
 from coord.model.robot import Robot
 from coord.paths.given import given
 from coord.paths.sides import Ground, Ways
-from coord.timing.meeting import first_violated
+from coord.timing.meeting import first_run_into
 
 LACKING: Final = "the plan lacks it"
 OFF_THE_FLOOR: Final = "an obstacle or the edge of the workspace is now in the way of its path"
@@ -219,10 +219,10 @@ def _together(problem: Problem, parts: Mapping[int, RobotPlan]) -> tuple[dict[in
         near = [other for other in company.near(k, part.path) if other in company.profiles]
         found = company.blocks(k, part.path, near)
         meetings = company.meetings(k, part.path, near, found)
-        violated = first_violated(meetings, part.profile)
+        violated = first_run_into(meetings, part.profile)
         if violated is None:
             company.take(k, part.path, part.profile)
             blocks += [Block(index[b.resting], index[b.driving], b.at) for b in found if b.then == k]
         else:
-            clashes[i] = f'it no longer keeps clear of "{robots[meetings[violated[0]].other].name}"'
+            clashes[i] = f'it no longer keeps clear of "{robots[meetings[violated].other].name}"'
     return clashes, tuple(blocks)

@@ -34,8 +34,8 @@ class Excess:
 
     @property
     def passes_after(self) -> bool:
-        """Whether it passes after the other robot."""
-        return self.over_low <= SLACK
+        """Whether it passes after the other robot; where it is clear on neither side, which it is nearer to."""
+        return self.over_low <= SLACK or SLACK < self.under_high > self.over_low
 
 
 def excess(profile: VelocityProfile, window: Window) -> Excess:

@@ -129,6 +129,14 @@ def first_violated(meetings: list[Meeting], profile: VelocityProfile) -> tuple[i
     return found
 
 
+def first_run_into(meetings: list[Meeting], profile: VelocityProfile) -> int | None:
+    """The first of those, by index, whose refined window is violated, too; None where a profile is clear of all."""
+    for index in all_violated(meetings, profile):
+        if all_violated([meetings[index].refined()], profile):
+            return index
+    return None
+
+
 def all_violated(meetings: list[Meeting], profile: VelocityProfile) -> list[int]:
     """All meetings, by index, at which a profile runs into another robot."""
     gaps = ((index, meeting.excess(profile)) for index, meeting in enumerate(meetings))

@@ -12,7 +12,8 @@ from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.solvers.jerk import rest_to_rest
 from coord.timing.clear import excess
-from coord.timing.meeting import Ends, Meeting, first_violated
+from coord.timing.delay import start_delay
+from coord.timing.meeting import Ends, Meeting, first_run_into, first_violated
 
 
 def random_meetings(rng, count):
@@ -117,3 +118,23 @@ def test_a_goal_a_centimetre_within_the_reach_of_a_resting_robot_is_not_avoided(
             ]
             assert all(meeting.is_avoided(profile) for meeting in found) == (gap > 0.65)
             assert (first_violated(found, profile) is None) == (gap > 0.65)
+
+
+def test_who_is_clear_of_refined_windows_runs_into_nobody():
+    """Delayed at the start no more than these ask for: some are not clear of the windows as they are, none runs in.
+
+    And both say the same about whom it passes after.
+    """
+    rng = np.random.default_rng(3)
+    closer = 0
+    for _ in range(120):
+        _, profile, found = random_meetings(rng, 4)
+        meetings = [meeting for meeting, *_ in found]
+        delayed = start_delay(profile, [meeting.refined() for meeting in meetings], {})
+        if delayed is None or delayed.departure == profile.departure:
+            continue
+        assert first_run_into(meetings, delayed) is None
+        sides = [meeting.passes_after(delayed) for meeting in meetings]
+        assert sides == [meeting.refined().passes_after(delayed) for meeting in meetings]
+        closer += first_violated(meetings, delayed) is not None
+    assert closer >= 5
