@@ -48,7 +48,7 @@ def test_the_excess_over_a_window_is_that_of_dense_sampling():
         assert over - 1e-9 <= gap.over_low <= over + 1e-5
         assert under - 1e-9 <= gap.under_high <= under + 1e-5
         assert gap.is_clear == (min(gap.over_low, gap.under_high) <= 1e-9)
-        assert gap.passes_after == (gap.over_low <= 1e-9)
+        assert gap.passes_after == (gap.over_low <= (1e-9 if gap.is_clear else gap.under_high))
 
 
 def test_the_time_of_a_collision_is_within_the_window():
