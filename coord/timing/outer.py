@@ -230,6 +230,8 @@ def _knots(departure: float, arrival: float, further: Sequence[float]) -> Array:
     count = int(np.clip(np.ceil((arrival - departure) / _CELL), _FEWEST, _MOST))
     given = np.unique(np.clip(np.array([departure, arrival, *further]), departure, arrival))
     given = given[np.append(True, np.diff(given) > _APART)]
+    if len(given) > SIZES[-1] + 1:  # bends beyond number: fewer knots only loosen the bounds
+        given = given[np.linspace(0, len(given) - 1, SIZES[-1] + 1).astype(int)]
     given[-1] = arrival
     knots = given.tolist()
     size = next(size for size in SIZES if size >= max(count, len(knots) - 1))

@@ -95,7 +95,7 @@ def _library(*_, **__):
 #: Steps of the timing stage, and what they give when they fail.
 FAILURES = {
     "splice": ("coord.timing.choices.spliced", lambda *_: []),
-    "program": ("coord.timing.choices.through_tube", lambda *_: None),
+    "program": ("coord.timing.choices.through_tube", lambda *_, **__: None),
     "program's library": ("coord.timing.choices.through_tube", _library),
     "splice's library": ("coord.timing.choices.spliced", _library),
     "branch and bound": ("coord.timing.passing.branch_and_bound", lambda _: (0, True)),
@@ -120,7 +120,7 @@ def test_everybody_arrives_whatever_step_of_the_timing_stage_fails(monkeypatch, 
 
 def test_everybody_arrives_when_all_steps_fail_together(monkeypatch):
     """Splice, program, branch and bound and start delay: only driving alone and waiting are left."""
-    for target, value in (*FAILURES.values(), ("coord.timing.closing.through_tube", lambda *_: None)):
+    for target, value in (*FAILURES.values(), ("coord.timing.closing.through_tube", lambda *_, **__: None)):
         if "coord.timing." in target:
             monkeypatch.setattr(target, value)
     for seed in SEEDS:
@@ -152,7 +152,9 @@ def test_arrival_does_not_hang_on_any_single_step(monkeypatch, step):
     """200 crowds without a ring of handed-over places: certified with the step switched off, some of them otherwise than with it."""
     problems = [crowd(seed, 7, cells=4, shapes=SHAPES[list(SHAPES)[seed % 3]]) for seed in range(100, 300)]
     before = [plan(problem, FASTEST).document for problem in problems[:40]]
-    instead = (lambda _: (0, True)) if step == "branch and bound" else (lambda *_: [] if step == "splice" else None)
+    instead = (
+        (lambda _: (0, True)) if step == "branch and bound" else (lambda *_, **__: [] if step == "splice" else None)
+    )
     for target in SWITCHES[step]:
         monkeypatch.setattr(target, instead)
     after = [plan(problem, FASTEST) for problem in problems]
