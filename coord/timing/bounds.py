@@ -100,11 +100,6 @@ def claims_of(ego: Ego, truly: Sequence[Forbidden]) -> list[Claim]:
     return found
 
 
-def inner_parts(ego: Ego, meeting: Meeting) -> list[Part]:
-    """The parts of a meeting that are truly forbidden, for ``coord.timing.outer``."""
-    return parts_of(ego, forbidden(ego, meeting))
-
-
 def parts_of(ego: Ego, truly: Sequence[Forbidden]) -> list[Part]:
     """The same for forbidden parts that are known."""
     return [part(ego, times, low, high, lasts=lasts) for times, low, high, lasts in truly]

@@ -70,15 +70,17 @@ class _Chase:
 
     def __init__(
         self, ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]],
-        best: VelocityProfile, bound: float,
+        near: Sequence[int], best: VelocityProfile, bound: float, *, most: int, fine: bool,
     ) -> None:  # fmt: skip
         self.ego, self.meetings, self.best, self.bound = ego, meetings, best, bound
         self.forbidden = forbidden
-        self.most, self.fine, self.programs = 0, False, 0
+        self.most, self.fine, self.programs = most, fine, 0
         self.near: list[int] = []
         self.failed: set[frozenset[tuple[int, bool]]] = set()
         self.parts: list[Part] = []
         self.owners: list[int] = []
+        for index in near:
+            self.add(index)
 
     def add(self, index: int) -> None:
         found = parts_of(self.ego, self.forbidden(index))
@@ -143,13 +145,11 @@ def close_gap(
     decided : whether it is known already that no other choice of before and after is better.
     is_real : whether the profile can be driven, or only stands for one that is sought: then the bound is of no use.
     """
-    chase = _Chase(ego, meetings, forbidden, best, bound)
-    chase.most, chase.fine = most, enough <= CLOSED or not decided
-    for index in near:
-        chase.add(index)
+    fine = enough <= CLOSED or not decided
+    chase = _Chase(ego, meetings, forbidden, near, best, bound, most=most, fine=fine)
     _from_below(chase, enough)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
-        others = _other_sides(chase, 1.0)
+        others = _other_sides(chase)
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
@@ -159,9 +159,9 @@ def close_gap(
     return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided)
 
 
-def _other_sides(chase: _Chase, share: float) -> Verdict:
-    """Whether anybody who passes some part on its other side could be earlier, with a share of all relaxations."""
-    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best), share)
+def _other_sides(chase: _Chase) -> Verdict:
+    """Whether anybody who passes some part on its other side could be earlier."""
+    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best))
 
 
 def is_plainly_best(
@@ -169,11 +169,8 @@ def is_plainly_best(
     best: VelocityProfile,
 ) -> bool:  # fmt: skip
     """Whether a glance shows that no other choice of before and after saves more than the share CLOSED."""
-    chase = _Chase(ego, meetings, forbidden, best, ego.solo_bound)
-    chase.most = _GLANCE
-    for index in near:
-        chase.add(index)
-    return _other_sides(chase, 1.0).cannot
+    chase = _Chase(ego, meetings, forbidden, near, best, ego.solo_bound, most=_GLANCE, fine=False)
+    return _other_sides(chase).cannot
 
 
 def _from_below(chase: _Chase, enough: float) -> None:

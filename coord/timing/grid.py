@@ -33,7 +33,7 @@ _LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
 _OF_STRETCH = 1 / 40
 
 #: Grids whose cells are scaled by no more than this may have many more of them.
-FINEST = 0.03
+_FINEST = 0.03
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6
@@ -108,7 +108,7 @@ def time_knots(
         is_taken = any(a < middle < b for a, b in spans)
         longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
-    sizes = LARGE_SIZES if mesh <= FINEST else SIZES
+    sizes = LARGE_SIZES if mesh <= _FINEST else SIZES
     size = next((size for size in sizes if size >= len(times) - 1), None)
     if size is None:
         return None

@@ -20,7 +20,8 @@ from coord.tolerances import OPTIMAL
 
 #: To close the gap to a robot's bound: so many relaxations are solved at most, and a gap below such a share of the
 #: arrival is left as it is. The second effort is made where proof is asked for.
-_EFFORTS = ((60, 5e-3), (600, CLOSED))
+_ENOUGH = 5e-3
+_EFFORTS = ((60, _ENOUGH), (600, CLOSED))
 
 #: Where more meetings came up than these, windows are not refined, and so many relaxations do.
 _FEW, _MOST_OF_MANY = 16, 20
@@ -102,7 +103,7 @@ class _Found:
     def is_loose(self) -> bool:
         """Whether windows that are nearer to the truth may gain something worth their cost."""
         gap = 1 - self.bound / self.search.best.arrival
-        return self.is_open or gap > (CLOSED if self.search.ego.caps.is_constant else _EFFORTS[0][1])
+        return self.is_open or gap > (CLOSED if self.search.ego.caps.is_constant else _ENOUGH)
 
     def or_rather(self, other: _Found) -> _Found:
         """The earlier of both, with what both have shown; the later one's choices say nothing if it is much later."""
@@ -126,7 +127,7 @@ def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = 
     if hurried and search.how != _NONE:
         return _Found(search, ego.solo_bound, nodes, True)
     bound, near = _certified(search, OPTIMAL if certify or ego.caps.is_constant else CLOSED)
-    if bound < search.best.arrival * (1 - (CLOSED if is_open else _EFFORTS[0][1])) and search.sharpen():
+    if bound < search.best.arrival * (1 - (CLOSED if is_open else _ENOUGH)) and search.sharpen():
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
     is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, sorted(near), search.best)

@@ -73,6 +73,21 @@ def _distances(ego, other, s, sigma):
     return np.hypot(gap[..., 0], gap[..., 1])
 
 
+def _wild_pairs(seed, count, kinds, least=0.2, places=240):
+    """Pairs of random paths, how near they may come, places on both, and the true distances between these."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        ego, other, reach = _wild_path(rng, kinds), _wild_path(rng, kinds), rng.uniform(least, 1.2)
+        s, sigma = np.linspace(0, ego.length, places), np.linspace(0, other.length, 250)
+        yield ego, other, reach, s, sigma, _distances(ego, other, s, sigma)
+
+
+@pytest.fixture(scope="session")
+def wild_pairs():
+    """(seed, count, kinds) -> pairs of paths with their truth."""
+    return _wild_pairs
+
+
 @pytest.fixture(scope="session")
 def distances():
     """(ego, other, s, sigma) -> all true distances."""

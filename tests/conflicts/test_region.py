@@ -14,28 +14,22 @@ from coord.tolerances import REGION_MARGIN
 
 
 @pytest.mark.parametrize("kinds", [("line",), ("arc",), ("clothoid",), ("line", "arc", "clothoid")], ids="-".join)
-def test_no_place_where_two_robots_are_too_close_is_left_out(wild_path, regions, distances, forbidden, kinds):
+def test_no_place_where_two_robots_are_too_close_is_left_out(wild_pairs, regions, forbidden, kinds):
     """60 pairs of random paths: of 60,000 places in each coordination plane none that is too close is allowed."""
-    rng = np.random.default_rng(1)
     met = 0
-    for _ in range(60):
-        ego, other, reach = wild_path(rng, kinds), wild_path(rng, kinds), rng.uniform(0.2, 1.2)
-        s, sigma = np.linspace(0, ego.length, 240), np.linspace(0, other.length, 250)
-        close = distances(ego, other, s, sigma) < reach - 1e-9
+    for ego, other, reach, s, sigma, gaps in wild_pairs(1, 60, kinds):
+        close = gaps < reach - 1e-9
         assert np.all(forbidden(regions(ego, other, reach), s, sigma)[close])
         met += close.any()
     assert met >= 10
 
 
 @pytest.mark.parametrize("kinds", [("line",), ("arc",), ("clothoid",)], ids="-".join)
-def test_little_more_is_forbidden_than_must_be(wild_path, regions, distances, forbidden, kinds):
+def test_little_more_is_forbidden_than_must_be(wild_pairs, regions, forbidden, kinds):
     """Over 60 pairs of random paths together, the regions are less than 1 % larger than the truth."""
-    rng = np.random.default_rng(2)
     must = does = 0
-    for _ in range(60):
-        ego, other, reach = wild_path(rng, kinds), wild_path(rng, kinds), rng.uniform(0.3, 1.2)
-        s, sigma = np.linspace(0, ego.length, 240), np.linspace(0, other.length, 250)
-        must += (distances(ego, other, s, sigma) < reach).sum()
+    for ego, other, reach, s, sigma, gaps in wild_pairs(2, 60, kinds, least=0.3):
+        must += (gaps < reach).sum()
         does += forbidden(regions(ego, other, reach), s, sigma).sum()
     assert must < does < 1.01 * must
 
@@ -160,14 +154,11 @@ def test_a_larger_distance_forbids_more(wild_path, regions, distances, forbidden
 
 
 @pytest.mark.parametrize("kinds", [("line",), ("line", "arc", "clothoid")], ids="-".join)
-def test_refined_bounds_still_miss_nothing_and_forbid_less(wild_path, regions, distances, forbidden, kinds):
+def test_refined_bounds_still_miss_nothing_and_forbid_less(wild_pairs, regions, forbidden, kinds):
     """40 pairs of random paths: what is too close stays forbidden, and less than half of what is not."""
-    rng = np.random.default_rng(3)
     coarse = fine = 0
-    for _ in range(40):
-        ego, other, reach = wild_path(rng, kinds), wild_path(rng, kinds), rng.uniform(0.2, 1.2)
-        s, sigma = np.linspace(0, ego.length, 1200), np.linspace(0, other.length, 250)
-        close = distances(ego, other, s, sigma) < reach - 1e-9
+    for ego, other, reach, s, sigma, gaps in wild_pairs(3, 40, kinds, places=1200):
+        close = gaps < reach - 1e-9
         found = regions(ego, other, reach)
         nearer = forbidden([refined(region, 0.25) for region in found], s, sigma)
         assert np.all(nearer[close])

@@ -9,7 +9,7 @@ import pytest
 
 from coord.alone.chain import chained
 from coord.alone.speed_limit import SpeedLimit
-from coord.timing.bounds import inner_parts
+from coord.timing import bounds
 from coord.timing.meeting import first_violated
 from coord.timing.outer import could_arrive, sides_of
 from coord.timing.passing import time_robot
@@ -19,7 +19,7 @@ NOTHING = Marks(np.empty(0), np.empty(0), np.empty(0), np.empty(0))
 
 
 def parts_of(ego, meetings):
-    return [part for meeting in meetings for part in inner_parts(ego, meeting)]
+    return [part for meeting in meetings for part in bounds.parts_of(ego, bounds.forbidden(ego, meeting))]
 
 
 def clear_motions(rng, ego, meetings, timing):
