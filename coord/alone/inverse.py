@@ -31,29 +31,44 @@ def time_at(profile: VelocityProfile, s: npt.ArrayLike) -> Array:
 def increasing_root(coefficients: Array, h: Array) -> Array:
     """Roots (m,) in [0, h] of cubics that do not decrease there; coefficients (4, m), lowest first.
 
-    Newton's method kept inside a shrinking bracket, so that it cannot leave or stall.
+    Each is sought from the end whose value is nearer to 0: there a motion that comes to rest is flat, and its cubic is
+    as good as one power.
     """
     c0, c1, c2, c3 = coefficients
-    low, high = np.zeros_like(h), h
-    u = np.where(c1 * h > 0, np.clip(-c0 / np.where(c1 * h > 0, c1, 1.0), 0.0, h), h / 2)
+    rest = c0 + h * (c1 + h * (c2 + h * c3))
+    is_back = rest < -c0
+    way = np.maximum(np.where(is_back, rest, -c0), 0.0)
+    slope = np.maximum(np.where(is_back, c1 + h * (2 * c2 + h * 3 * c3), c1), 0.0)
+    u = _time_for(way, slope, np.where(is_back, -(c2 + 3 * h * c3), c2), c3, h)
+    return np.where(is_back, h - u, u)
+
+
+def _time_for(way: Array, a: Array, b: Array, c: Array, h: Array) -> Array:
+    """When a u + b u^2 + c u^3, which does not decrease on [0, h] and begins with a >= 0, is as much as ``way``.
+
+    Newton's method kept inside a shrinking bracket, so that it cannot leave or stall.
+    """
+    times, rows = np.empty_like(h), np.arange(len(h))
     resolved = 4e-16 * (1 + h)
-    roots, rows = np.empty_like(h), np.arange(len(h))
-    for _ in range(80):
-        value = c0 + u * (c1 + u * (c2 + u * c3))
-        below = value < 0
-        low, high = np.where(below, u, low), np.where(below, high, u)
-        slope = c1 + u * (2 * c2 + u * 3 * c3)
-        step = u - value / np.where(slope > 0, slope, np.inf)
-        inside = (slope > 0) & (step >= low) & (step <= high)
-        following = np.where(inside, step, (low + high) / 2)
-        found = (np.abs(following - u) <= resolved) | (high - low <= resolved)
-        u = following
-        if found.all():
-            break
-        if found.any():  # few near a stop need many more rounds
-            roots[rows[found]] = u[found]
-            left = np.flatnonzero(~found)
-            rows, resolved = rows[left], resolved[left]
-            c0, c1, c2, c3, low, high, u = (value[left] for value in (c0, c1, c2, c3, low, high, u))
-    roots[rows] = u
-    return roots
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = 2 * way / (a + np.sqrt(a * a + 4 * np.maximum(b, 0.0) * way))
+        u = np.fmin(np.fmin(u, np.cbrt(way / np.maximum(c, 0.0))), h)
+        low, high = np.zeros_like(h), h
+        for _ in range(80):
+            value = u * (a + u * (b + u * c)) - way
+            below = value < 0
+            low, high = np.where(below, u, low), np.where(below, high, u)
+            step = u - value / (a + u * (2 * b + u * 3 * c))
+            following = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+            left = np.flatnonzero((np.abs(following - u) > resolved) & (high - low > resolved))
+            u = following
+            if len(left) == len(rows):
+                continue
+            times[rows] = u
+            if not len(left):
+                break
+            rows = rows[left]  # few near a stop need many more rounds
+            way, a, b, c, low, high, u, resolved = (value[left] for value in (way, a, b, c, low, high, u, resolved))
+        else:
+            times[rows] = u
+    return times

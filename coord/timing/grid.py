@@ -19,7 +19,7 @@ from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.solvers.linear import LARGE_SIZES, SIZES, Cells
-from coord.timing.tube import Tube, lower_on_cells, upper_on_cells
+from coord.timing.tube import Tube, lower_on_cells, off_chords, upper_on_cells
 from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN, SAME_PLACE
 
 #: First cells after an event of the tube last this share of acceleration / jerk; then they grow.
@@ -32,8 +32,9 @@ _LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
 #: On long stretches without an event cells may last this share of the stretch.
 _OF_STRETCH = 1 / 40
 
-#: Grids whose cells are scaled by no more than this may have many more of them.
-_FINEST = 0.03
+#: [m] Cells on which a bound is off its chord by more than this, times the mesh, are cut, so often at most; but none
+#: that is shorter [s]: the solver fails where cells differ too much.
+_BENT, _CUTS, _UNCUT = 0.01, 6, 5e-3
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6
@@ -86,12 +87,13 @@ class Course:
 
 
 def time_knots(
-    tube: Tube, departure: float, arrival: float, limits: Limits, mesh: float, further: Sequence[float] = ()
-) -> Array | None:
+    tube: Tube, departure: float, arrival: float, limits: Limits, mesh: float, further: Sequence[float] = (), *,
+    many: bool = False,
+) -> Array | None:  # fmt: skip
     """Knots at the tube's events and ``further`` ones [s], dense behind and before each, as many as a program has.
 
     None where that would be more than the largest program has, or where there is no time at all. ``mesh`` scales all
-    cells.
+    cells; ``many``: there may be thousands.
     """
     if arrival - departure < _SAME_TIME:
         return None
@@ -108,7 +110,8 @@ def time_knots(
         is_taken = any(a < middle < b for a, b in spans)
         longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
-    sizes = LARGE_SIZES if mesh <= _FINEST else SIZES
+    sizes = LARGE_SIZES if many else SIZES
+    times = _bent_ones_cut(tube, times, _BENT * mesh, sizes[-1])
     size = next((size for size in sizes if size >= len(times) - 1), None)
     if size is None:
         return None
@@ -117,6 +120,20 @@ def time_knots(
         times.insert(k + 1, (times[k] + times[k + 1]) / 2)
     times[-1] = arrival
     return np.array(times)
+
+
+def _bent_ones_cut(tube: Tube, times: list[float], off: float, most: int) -> list[float]:
+    """Knots with further ones in the middle of cells on which some bound is farther ``off`` its chord [m].
+
+    ``most`` : no more than so many cells.
+    """
+    for _ in range(_CUTS):
+        at = np.array(times)
+        cut = (off_chords(tube, at) > off) & (np.diff(at) > _UNCUT)
+        if not cut.any() or len(cut) + np.count_nonzero(cut) > most:
+            break
+        times = sorted([*times, *((at[:-1] + at[1:]) / 2)[cut].tolist()])
+    return times
 
 
 def _graded(start: float, end: float, first: float, longest: float) -> list[float]:

@@ -21,7 +21,7 @@ from coord.solvers.linear import Cells, farthest, smoothest
 from coord.timing.ego import Ego
 from coord.timing.grid import Course, border_times, cells_between, cells_in, time_knots
 from coord.timing.polish import land_exactly
-from coord.timing.rounds import Settled, first_guess, is_hopeless, rounds
+from coord.timing.rounds import LACK, Settled, first_guess, is_hopeless, rounds
 from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
@@ -35,11 +35,17 @@ _FINER, _FINER_IN_BENDS = 5e-4, 1e-3
 #: [s] The search for the arrival ends when it rises by less than this.
 _ARRIVAL_STEP = 2e-3
 
+#: Steps of that search at most: a few suffice where motions are found.
+_MOST_STEPS = 12
+
 #: [m] An upper bound below this holds the robot at its start: it departs when the bound has risen above.
 _AT_START = 2e-3
 
 #: On paths with bends, and how much longer than in the rounds a motion may take to fit exactly [s].
-_MESHES_OF_BENDS, _PAUSES = (1.0, 0.4, 0.16), (0.0, 2e-3, 1e-2, 3e-2)
+_MESHES_OF_BENDS, _PAUSES = (1.0, 0.4, 0.16), (0.0, 2e-3)
+
+#: What follows where nothing else decides, as long as a finer mesh brings what lacks below this share.
+_FINER_MESH_OF_BENDS, _LESS = 0.07, 0.75
 
 #: Samples of a profile for its course.
 _SAMPLES = 400
@@ -63,10 +69,11 @@ def through_tube(
     fine : whether a narrow tube is worth the finest grids.
     """
     if not ego.caps.is_constant:
-        return None if course is None else _round_bends(ego, tube, least, most, course)
+        return None if course is None else _round_bends(ego, tube, least, most, course, fine=fine)
     best = None
     for mesh in (*_MESHES, *_FINER_MESHES) if fine else _MESHES:
-        attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh)
+        many = mesh in _FINER_MESHES
+        attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh, many)
         profile = _through(attempt, least, most)
         gains = 0.0 if profile is None else 1.0 if best is None else best.arrival / profile.arrival - 1
         if gains > 0:
@@ -98,19 +105,20 @@ def smooth_through(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Attempt:
-    """A tube on one mesh: limits a little tightened, cells scaled by ``mesh``."""
+    """A tube on one mesh: limits a little tightened, cells scaled by ``mesh``, thousands of them where ``many``."""
 
     ego: Ego
     tube: Tube
     limits: Limits
     departure: float
     mesh: float
+    many: bool = False
 
 
 def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | None:
     if _reach(attempt, most) < 0:
         return None
-    arrival = _rising(attempt, least, most)
+    arrival = _least(attempt, least, most)
     for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
         at = min(arrival + pause, most)
         profile = _smooth(attempt, at, None)
@@ -121,17 +129,24 @@ def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | 
     return None
 
 
-def _rising(attempt: _Attempt, least: float, most: float) -> float:
-    """The least arrival on the grid, from below: where metres lack, so many seconds more are needed at least."""
-    ego = attempt.ego
-    arrival = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5)
-    while True:
-        step = min(max(-_reach(attempt, arrival), 0.0), 10 * ego.length) / attempt.limits.speed
-        if arrival + step >= most:
-            return most
-        arrival += step
-        if step <= _ARRIVAL_STEP:
+def _least(attempt: _Attempt, least: float, most: float) -> float:
+    """The least arrival on the grid, which can be reached at ``most``.
+
+    Where metres lack, so many seconds more are needed at least. Grids are built anew for each arrival, so that a large
+    step may lead too far: then it is gone back. Where no motion is found at all the difference is halved.
+    """
+    ego, speed = attempt.ego, attempt.limits.speed
+    low, high = max(least, attempt.departure + (ego.alone.arrival - ego.alone.departure) * 0.5), most
+    arrival = min(low, high)
+    for _ in range(_MOST_STEPS):
+        reached = _reach(attempt, arrival) / speed
+        if abs(reached) <= _ARRIVAL_STEP:
             return arrival
+        low, high = (arrival, high) if reached < 0 else (low, arrival)
+        if high - low <= _ARRIVAL_STEP:
+            break
+        arrival = arrival - reached if low < arrival - reached < high else (low + high) / 2
+    return high
 
 
 def _reach(attempt: _Attempt, arrival: float) -> float:
@@ -144,34 +159,41 @@ def _reach(attempt: _Attempt, arrival: float) -> float:
     return -np.inf if reached is None else reached - ego.length
 
 
-def _round_bends(ego: Ego, tube: Tube, least: float, most: float, course: Course) -> VelocityProfile | None:
+def _round_bends(
+    ego: Ego, tube: Tube, least: float, most: float, course: Course, *, fine: bool
+) -> VelocityProfile | None:
     """The quickest profile that rounds about a course lead to: finer ones only where they may gain something."""
-    limits, departure = tightened(ego.robot.limits), held_until(ego, tube)
-    settled = first_guess(ego, course, departure, most)
-    for mesh in _MESHES_OF_BENDS:
-        is_first, is_last = mesh == _MESHES_OF_BENDS[0], mesh == _MESHES_OF_BENDS[-1]
-        attempt = _Attempt(ego, tube, limits, departure, mesh)
-        for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first):
-            settled = found
+    attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), 0.0, fine)
+    settled = first_guess(ego, course, attempt.departure, most)
+    meshes = (*_MESHES_OF_BENDS, _FINER_MESH_OF_BENDS) if fine else _MESHES_OF_BENDS
+    lacked = np.inf
+    for mesh in meshes:
+        if mesh == _FINER_MESH_OF_BENDS and settled.lacks > _LESS * lacked:
+            break
+        lacked, is_first, least_lacking = settled.lacks, mesh == meshes[0], settled
+        for found in rounds(ego, tube, attempt.limits, mesh, most, settled, is_first=is_first, many=fine):
+            settled, least_lacking = found, min(least_lacking, found, key=lambda one: one.lacks)
             if settled.is_near:
-                if not is_last and settled.arrival > least * (1 + _FINER_IN_BENDS):
+                if mesh != meshes[-1] and settled.arrival > least * (1 + _FINER_IN_BENDS):
                     break
-                profile = _fitting(attempt, most, settled, _PAUSES[:2])
+                profile = _fitting(replace(attempt, mesh=mesh), most, settled)
                 if profile is not None:
                     return profile
+        if settled.lacks > LACK:  # rounds may lead away again
+            settled = least_lacking
         if is_hopeless(settled, mesh):
             return None
-    fits = (_fitting(replace(attempt, mesh=mesh), most, settled, _PAUSES) for mesh in reversed(_MESHES_OF_BENDS))
+    fits = (_fitting(replace(attempt, mesh=mesh), most, settled) for mesh in reversed(meshes))
     return next((profile for profile in fits if profile is not None), None)
 
 
-def _fitting(attempt: _Attempt, most: float, settled: Settled, pauses: Sequence[float]) -> VelocityProfile | None:
+def _fitting(attempt: _Attempt, most: float, settled: Settled) -> VelocityProfile | None:
     """The profile with the borders passed as in the rounds, a little later where it does not fit else."""
     ego = attempt.ego
-    for pause in pauses:
+    for pause in _PAUSES:
         arrival = min(settled.arrival + pause, most)
         passes = settled.passes.tolist()
-        times = time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, passes)
+        times = _grid(attempt, arrival, passes)
         if times is None:
             return None
         profile = _profile(attempt, cells_between(attempt.tube, times, ego.length, ego.caps, settled.passes))
@@ -210,7 +232,12 @@ def _knots(attempt: _Attempt, arrival: float, course: Course | None) -> Array | 
         further = [time for span in attempt.tube.spans for time in span]
     else:
         further = border_times(attempt.ego.caps, course.within(attempt.departure, arrival))
-    return time_knots(attempt.tube, attempt.departure, arrival, attempt.limits, attempt.mesh, further)
+    return _grid(attempt, arrival, further)
+
+
+def _grid(attempt: _Attempt, arrival: float, further: Sequence[float]) -> Array | None:
+    limits, mesh = attempt.limits, attempt.mesh
+    return time_knots(attempt.tube, attempt.departure, arrival, limits, mesh, further, many=attempt.many)
 
 
 def course_of(profile: VelocityProfile, since: float) -> Course:

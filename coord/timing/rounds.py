@@ -47,8 +47,9 @@ _ARRIVAL = 4.0
 #: [s] Borders of sections are passed at least so long after each other and after the departure.
 _APART = 0.02
 
-#: [m] Bounds are narrowed by this, so that the motion fits in truth where it fits as taken for linear.
-_NARROWED = 2e-4
+#: [m] Bounds are narrowed by this, so that the motion fits in truth where it fits as taken for linear; and by so many
+#: times as much each time that it turned out not to.
+_NARROWED, _NARROWER = 2e-4, 3.0
 
 #: [m] Less than this lacks where a motion is found; and where more lacks, times the mesh, finer meshes do not help.
 LACK, _MUCH = 1e-5, 0.05
@@ -96,20 +97,26 @@ def first_guess(ego: Ego, course: Course, departure: float, most: float) -> Sett
 
 
 def rounds(
-    ego: Ego, tube: Tube, limits: Limits, mesh: float, most: float, guess: Settled, *, is_first: bool
-) -> Iterator[Settled]:
-    """Better and better motions on one mesh; it ends where more rounds are of no use."""
+    ego: Ego, tube: Tube, limits: Limits, mesh: float, most: float, guess: Settled, *, is_first: bool,
+    many: bool = False,
+) -> Iterator[Settled]:  # fmt: skip
+    """Better and better motions on one mesh; it ends where more rounds are of no use.
+
+    Whoever asks for more after one that is near has found that it does not fit in truth.
+
+    ``many`` : whether the grid may have thousands of cells.
+    """
     departure, before, stuck, is_strict = float(guess.motion.times[0]), guess, 0, False
     trusts = iter(_TRUST if is_first else _TRUST_FINE)
     trust = used = next(trusts)
-    growth = _GROWTH if is_first else 1.0
+    growth, narrowed = _GROWTH if is_first else 1.0, _NARROWED
     for count in range(_MOST_ROUNDS):
         passes = _in_order(guess.passes, departure, guess.arrival)
-        times = time_knots(tube, departure, guess.arrival, limits, mesh, passes.tolist())
+        times = time_knots(tube, departure, guess.arrival, limits, mesh, passes.tolist(), many=many)
         if times is None:
             return
         at = np.abs(times[:, None] - passes).argmin(axis=0)
-        cells = _narrowed(cells_between(tube, times, ego.length, ego.caps, times[at]))
+        cells = _narrowed(cells_between(tube, times, ego.length, ego.caps, times[at]), narrowed)
         freedom = _freedom(tube, times, at, trust, most, is_strict)
         found = moved(cells, limits, ego.length, guess.motion.at(times), freedom)
         if found is None:
@@ -119,12 +126,14 @@ def rounds(
             guess, trust, used, is_strict = before, _BACK * used, 0.0, True
             continue
         gain = guess.arrival - float(motion.times[-1])
-        is_near = count > 0 and max(lacks, guess.lacks) < LACK and abs(gain) < _NEAR * guess.arrival
+        is_near = count > is_first and max(lacks, guess.lacks) < LACK and abs(gain) < _NEAR * guess.arrival
         is_far = 0 < trust <= 1.001 * np.abs((motion.times - times)[[*at, -1]]).max()
         is_better = lacks < _RATHER * guess.lacks or (lacks < LACK and gain > _NEAR * guess.arrival)
         stuck = stuck + 1 if lacks > max(LACK, _LESS * guess.lacks) and not (is_far and is_better) else 0
         before, guess = guess, Settled(motion, motion.times[at], lacks, is_near)
         yield guess
+        if is_near:
+            narrowed *= _NARROWER
         following = min(growth * trust, _TRUST_MOST) if is_far and is_better else next(trusts, None)
         if following is None or stuck == _TRIES:
             return
@@ -144,8 +153,8 @@ def _in_order(passes: Array, departure: float, arrival: float) -> Array:
     return np.asarray(np.minimum(later, until))
 
 
-def _narrowed(cells: Cells) -> Cells:
-    return replace(cells, upper=cells.upper - _NARROWED, lower=cells.lower + _NARROWED)
+def _narrowed(cells: Cells, by: float) -> Cells:
+    return replace(cells, upper=cells.upper - by, lower=cells.lower + by)
 
 
 def _freedom(tube: Tube, times: Array, at: npt.NDArray[np.intp], trust: float, most: float, is_strict: bool) -> Freedom:

@@ -68,6 +68,25 @@ def upper_on_cells(bound: Bound, times: Array, margin: float) -> Array:
     In each cell the line between the bound's values at the ends is lowered until it lies below the bound
     everywhere. Cells must not reach across the end of the bound.
     """
+    u0, u1, drop = _chords(bound, times)
+    share = np.arange(4) / 3
+    values = u0[:, None] + (u1 - u0)[:, None] * share - (drop + margin)[:, None]
+    return np.where((times[:-1] >= bound.times[-1])[:, None], np.inf, values)
+
+
+def off_chords(tube: Tube, times: Array) -> Array:
+    """By how much (N,) [m] bounds narrow the tube in the cells between knots because they are no lines there."""
+    off = np.zeros(len(times) - 1)
+    for bound in tube.upper:
+        np.maximum(off, np.where(times[:-1] >= bound.times[-1], 0.0, _chords(bound, times)[2]), out=off)
+    for bound in tube.lower:
+        _, _, drop = _chords(_mirrored(bound), -times[::-1])
+        np.maximum(off, np.where(times[1:] <= bound.times[0], 0.0, drop[::-1]), out=off)
+    return off
+
+
+def _chords(bound: Bound, times: Array) -> tuple[Array, Array, Array]:
+    """Values (N,), (N,) [m] of an upper bound at both ends of cells, and how far it is below the line in between."""
     start, end = times[:-1], times[1:]
     u0, u1 = _left_value(bound, start), _left_value(bound, end)
     edges = bound.times[1:-1]
@@ -80,15 +99,16 @@ def upper_on_cells(bound: Bound, times: Array, margin: float) -> Array:
     line = u0[cell] + (u1[cell] - u0[cell]) * (edges - start[cell]) / (end[cell] - start[cell])
     drop = np.zeros(len(start))
     np.maximum.at(drop, cell, line - at_edges)
-    share = np.arange(4) / 3
-    values = u0[:, None] + (u1 - u0)[:, None] * share - (drop + margin)[:, None]
-    return np.where((start >= bound.times[-1])[:, None], np.inf, values)
+    return u0, u1, drop
 
 
 def lower_on_cells(bound: Bound, times: Array, margin: float) -> Array:
     """Bezier bounds (N, 4) [m] that keep a cubic in each cell above a lower bound: the mirror image."""
-    mirrored = Bound(-bound.times[::-1], -bound.values[::-1, ::-1])
-    return -upper_on_cells(mirrored, -times[::-1], margin)[::-1, ::-1]
+    return -upper_on_cells(_mirrored(bound), -times[::-1], margin)[::-1, ::-1]
+
+
+def _mirrored(bound: Bound) -> Bound:
+    return Bound(-bound.times[::-1], -bound.values[::-1, ::-1])
 
 
 def _left_value(bound: Bound, t: Array) -> Array:
