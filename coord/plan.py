@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 
 from coord.coordination import diagnose
-from coord.coordination.advice import advised
+from coord.coordination.advice import MOST_LOOKS, advised
 from coord.coordination.blocking import arc_of, reaches_of
 from coord.coordination.extending import extended
 from coord.coordination.kept import Kept
@@ -88,9 +89,10 @@ def plan(
 
 
 def _works(problem: Problem, options: Options) -> bool:
-    """Whether there is a certified plan; it is not kept."""
+    """Whether there is a certified plan that takes little search; it is not kept."""
+    looks, most = itertools.count(), MOST_LOOKS * len(problem.robots)
     try:
-        found = _planned(problem, options, lambda stage, done, total: None, lambda: False)
+        found = _planned(problem, options, lambda stage, done, total: None, lambda: next(looks) >= most)
     except (NoPlanError, InvalidValueError):
         return False
     return verify(serialise(found)).certified

@@ -33,6 +33,9 @@ _PROBES, _SWEEPS, _LEAST_GAIN = 4, 40, 1e-6
 #: [s] A move must gain this much, so that rounding is not mistaken for progress.
 _PROGRESS = 1e-9
 
+#: A border whose steps have shrunk to this share of the first ones is left as it is: no move gains that much any more.
+_SETTLED = 1e-9
+
 #: Directions of the pattern, in (speed, acceleration).
 _PATTERN = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, -1), (1, -1), (-1, 1))
 
@@ -104,9 +107,10 @@ class _Borders:
         steps = [first] * len(self.states)
         for _ in range(_SWEEPS):
             before = math.fsum(self.times)
-            for m in range(1, len(self.caps)):
+            loose = [m for m in range(1, len(self.caps)) if steps[m][0] > _SETTLED * first[0]]
+            for m in loose:
                 steps[m] = self._search(m, steps[m])
-            for m in range(1, len(self.caps) - 1):
+            for m in (m for m in loose if m < len(self.caps) - 1):
                 self._search_pair(m, steps[m])
             if before - math.fsum(self.times) < _LEAST_GAIN * before:
                 return

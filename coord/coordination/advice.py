@@ -1,7 +1,8 @@
 """What would help: small changes of a problem, each one tried before it is told.
 
 A diagnosis names robots. With these alone on the floor, the clearance is made smaller, then each of their goals and
-starts is moved, until they come home; the smallest change of each kind that was found goes into the remedy.
+starts is moved, until they come home; the smallest change of each kind that was found goes into the remedy. Whoever
+plans them may give up early (``MOST_LOOKS``).
 """
 
 from __future__ import annotations
@@ -28,6 +29,10 @@ _GRID, _ROUNDS = 1e-3, 5
 
 #: Lengths of moves in units of the robot's radius, and directions.
 _STEPS, _DIRECTIONS = (1.0, 2.5), 4
+
+#: A try is given up after so many looks for a way or a motion a robot: where a change helped, it took one each, and
+#: where it did not, the last ways to get past each other took tens of them, of the dearest kind.
+MOST_LOOKS: Final = 4
 
 #: Whether everybody comes home.
 Works: TypeAlias = Callable[[Problem], bool]

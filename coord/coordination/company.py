@@ -43,17 +43,17 @@ class Company:
 
     def __post_init__(self) -> None:
         self._reaches = np.array(reaches_of(self.problem.robots, self.problem.workspace.clearance))
-        self._boxes = np.array([_box(path, reach) for path, reach in zip(self.paths, self._reaches, strict=True)])
+        self._boxes = _boxes(self.paths, self._reaches)
 
     def take(self, i: int, path: Path, profile: VelocityProfile) -> None:
         """Give a robot its path and its profile."""
         self.paths[i], self.profiles[i] = path, profile
-        self._boxes[i] = _box(path, self._reaches[i])
+        self._boxes[i] = _boxes([path], self._reaches[[i]])[0]
         self._chains.pop(i, None)
 
     def near(self, i: int, path: Path) -> list[int]:
         """Whom robot i might meet on a path, ascending."""
-        xmin, ymin, xmax, ymax = _box(path, self._reaches[i])
+        xmin, ymin, xmax, ymax = _boxes([path], self._reaches[[i]])[0]
         boxes = self._boxes
         touch = (boxes[:, 0] <= xmax) & (boxes[:, 2] >= xmin) & (boxes[:, 1] <= ymax) & (boxes[:, 3] >= ymin)
         touch[i] = False
@@ -72,12 +72,21 @@ class Company:
             self.problem.robots, paths, pairs, workspace.clearance, stay=workspace.after_arrival == "stay"
         )
 
-    def meetings(self, i: int, path: Path, others: Sequence[int], blocks: Sequence[Block]) -> list[Meeting]:
-        """All meetings of robot i on a path with those of some others that have a profile."""
+    def meetings(
+        self, i: int, path: Path, others: Sequence[int], blocks: Sequence[Block], known: Sequence[Meeting] = ()
+    ) -> list[Meeting]:
+        """All meetings of robot i on a path with those of some others that have a profile.
+
+        ``known`` : all meetings with some of them, which are not worked out anew.
+        """
         robots, clearance = self.problem.robots, self.problem.workspace.clearance
         own, blocked = chords(path), frozenset(blocks)
-        found = []
+        done = {meeting.other for meeting in known}
+        found: list[Meeting] = []
         for k in (k for k in others if k in self.profiles):
+            if k in done:
+                found += [meeting for meeting in known if meeting.other == k]
+                continue
             lanes = (i, robots[i].footprint, own), (k, robots[k].footprint, self._chain(k))
             found += meetings_of(*lanes, self.profiles[k], blocked, clearance)
         return found
@@ -128,9 +137,12 @@ def regions_of(ego: Lane, other: Lane, ends: Ends, clearance: float) -> tuple[Co
     )
 
 
-def _box(path: Path, reach: float) -> tuple[float, float, float, float]:
-    """xmin, ymin, xmax, ymax [m] of the floor that a robot may sweep."""
-    low, high = path.poses[:, :2].min(axis=0).tolist(), path.poses[:, :2].max(axis=0).tolist()
-    bent = path.pieces[path.pieces[:, 1:].any(axis=1), 0]
-    room = float(reach + bent.max(initial=0.0) / 2)  # a piece lies within half its length of its ends
-    return (low[0] - room, low[1] - room, high[0] + room, high[1] + room)
+def _boxes(paths: Sequence[Path], reaches: Array) -> Array:
+    """xmin, ymin, xmax, ymax (n, 4) [m] of the floor that each robot may sweep."""
+    first = np.cumsum([0, *(len(path.poses) for path in paths[:-1])])
+    at = np.concatenate([path.poses[:, :2] for path in paths])
+    pieces = np.concatenate([part for path in paths for part in (path.pieces, np.zeros((1, 3)))])  # one a pose
+    bent = np.where(pieces[:, 1:].any(axis=1), pieces[:, 0], 0.0)
+    # a piece lies within half its length of its ends
+    room = (reaches + np.maximum.reduceat(bent, first) / 2)[:, None]
+    return np.hstack([np.minimum.reduceat(at, first) - room, np.maximum.reduceat(at, first) + room])

@@ -1,64 +1,34 @@
 """One more robot: those that a plan lacks are planned after all that it has, whose motion stays as it is.
 
-Nobody makes way for a robot that comes last. Where its start lies on somebody's path, it has to leave in time; where
-somebody's goal lies on its own, it has to pass before that robot parks there, or go round. So unlike in a full run
-there may be no plan although an order would bring everybody home: then it is told what is in the way.
+Nobody makes way for a robot that comes last. Where its start lies on somebody's path, it has to leave in time, if need
+be to a place aside; where somebody's goal lies on its own, it has to pass before that robot parks there, or go round.
+So unlike in a full run there may be no plan although an order would bring everybody home: then it is told what is in
+the way.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-import numpy as np
-
-from coord.alone.inverse import time_at
-from coord.conflicts.core import conflict_core
-from coord.conflicts.rest import closest
 from coord.coordination import diagnose, joining
+from coord.coordination.aside import ways_aside
 from coord.coordination.blocking import Block, arc_of, in_order, place_of, whose_place
 from coord.coordination.company import Company
 from coord.coordination.kept import Kept
+from coord.coordination.latecomer import Joined, comes_too_late, joined, passing
 from coord.coordination.order import topological_order, urgency
-from coord.coordination.prioritised import timing, waiting
 from coord.coordination.records import plan_with, record_of, reroute_record, unopened
 from coord.coordination.rerouting import Rerouting, without_rings
-from coord.coordination.way_round import Rests, rests, way_round
+from coord.coordination.way_round import Rests, Way, rests, way_round
 from coord.errors import InvalidValueError, NoPlanError
 from coord.model.options import Options
 from coord.model.problem import Problem
 from coord.model.result import Diagnosis, Plan, Reroute
 from coord.model.route import Route
 from coord.paths.routes import find_routes
-from coord.timing.ego import Ego, ego
-from coord.timing.meeting import first_run_into
-from coord.timing.passing import Timing
-from coord.timing.ties import equally_early
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Joined:
-    """A robot on one route, after all who have a profile.
-
-    Parameters
-    ----------
-    timing : None where it finds no time to drive on this route.
-    blocks : between it and everybody near, but for ``late`` : those by which others with a profile should come later.
-    """
-
-    i: int
-    route: Route
-    ego: Ego
-    timing: Timing | None
-    blocks: tuple[Block, ...]
-    late: tuple[Block, ...]
-
-    @property
-    def own(self) -> frozenset[Block]:
-        """The places of others that its path runs over."""
-        return frozenset(block for block in (*self.blocks, *self.late) if block.driving == self.i)
 
 
 def extended(
@@ -104,12 +74,12 @@ def extended(
     for j in ways.order:
         check_time()
         i = ways.index[j]
-        first = _on(company, i, ways.opened.routes[j], options)
-        best = _best(company, first, known, options)
+        first = joined(company, i, ways.opened.routes[j], options)
+        best, passers = _best(company, first, known, options)
         if best.timing is None:
             failed.append(_cannot_join(company, first, options))
             continue
-        rerouted += ways.told(j) if best is first else [_round(problem, first, best, ways.quickest[j])]
+        rerouted += ways.told(j) if best is first else [_told(company, first, best, passers, ways.quickest[j])]
         blocks += [block for block in best.blocks if block.first in company.profiles or block.then in company.profiles]
         company.take(i, best.route.path, best.timing.profile)
         parts[i] = record_of(problem.robots[i], ways.quickest[j], best.ego, best.timing, names)
@@ -178,59 +148,74 @@ def _company(kept: Kept, ways: _Ways) -> Company:
     return Company(kept.problem, [paths[i] for i in range(len(paths))], profiles)
 
 
-def _on(company: Company, i: int, route: Route, options: Options) -> _Joined:
-    """A robot on a route: its profile against all who have one."""
-    one = ego(company.problem.robots[i], route.path, route.alone)
-    near = company.near(i, route.path)
-    blocks = company.blocks(i, route.path, near)
-    late = tuple(block for block in blocks if block.first == i and block.then in company.profiles)
-    meetings = company.meetings(i, route.path, near, blocks)
-    found = timing(
-        one,
-        meetings,
-        profile=options.profile,
-        method=options.method,
-        certify=options.certify,
-    )
-    is_last = options.method == "velocity" and all(k in company.profiles for k in near)
-    if found is not None and found.how == "start delay" and is_last:
-        found = next(iter(equally_early(one, meetings, found)), found)
-    if not late:
-        found = found or waiting(one, meetings)
-    elif found is not None and first_run_into(meetings, found.profile) is not None:
-        found = None  # no order promises that waiting helps
-    return _Joined(i, route, one, found, tuple(block for block in blocks if block not in late), late)
+def _best(
+    company: Company, first: Joined, known: Callable[[], Rests], options: Options
+) -> tuple[Joined, Sequence[Block]]:
+    """A robot on the route that it has; where it finds no time there, on the first of its other ways where it does.
 
-
-def _best(company: Company, first: _Joined, known: Callable[[], Rests], options: Options) -> _Joined:
-    """A robot on the route that it has; where it finds no time there, round the goals on it; else round all that rest.
-
-    To go round as well where it need not was measured to gain as often as it loses, for twice the time.
+    And who passes its start, where it goes aside for them. To take another way as well where it need not was measured
+    to gain as often as it loses, for twice the time.
     """
     if first.timing is not None or options.keep_paths or company.problem.robots[first.i].path:
-        return first
+        return first, ()
+    if any(comes_too_late(company, first.i, block) for block in first.late if block.resting == first.i):
+        return first, ()
+    for way, passers in _other_ways(company, first, known, options.shape):
+        found = _on_way(company, first, way, options)
+        if found.timing is not None:
+            return found, passers
+    return first, ()
+
+
+def _other_ways(
+    company: Company, first: Joined, known: Callable[[], Rests], shape: str
+) -> Iterator[tuple[Way, Sequence[Block]]]:
+    """Ways round the goals on a robot's route, and round all that rest; where some pass its start, ways aside for them.
+
+    These come first where it is sure that it cannot be ahead of one of them, on its route at least.
+    """
     robots, clearance = company.problem.robots, company.problem.workspace.clearance
     movable = frozenset(block for block in first.own if not whose_place(block, robots, clearance))
+    passers = tuple(block for block in first.late if block.resting == first.i)
+    is_chased = any(block in first.shut for block in passers)
+
+    def aside() -> Iterator[tuple[Way, Sequence[Block]]]:
+        ways = ways_aside(company, known(), first.route, passers, first.own - movable, shape) if passers else ()
+        return ((way, passers) for way in ways)
+
+    if is_chased:
+        yield from aside()
     parked = movable.intersection(first.late)
     for gone in (parked, movable) if movable > parked else (movable,):
-        way = way_round(known(), first.i, first.route, first.own - gone, options.shape) if gone else None
-        found = None if way is None else _on(company, first.i, way.route, options)
-        if found is not None and found.timing is not None:
-            return found
-    return first
+        way = way_round(known(), first.i, first.route, first.own - gone, shape) if gone else None
+        if way is not None:
+            yield way, ()
+    if not is_chased:
+        yield from aside()
 
 
-def _round(problem: Problem, first: _Joined, best: _Joined, quickest: Route) -> Reroute:
-    """What going round others at rest has changed for a robot."""
-    robots, route = problem.robots, best.route
+def _on_way(company: Company, first: Joined, way: Way, options: Options) -> Joined:
+    """A robot on another way; who passes its own places is the same on all of them."""
+    passing_by = (block for block in (*first.blocks, *first.late) if block.resting == first.i)
+    return joined(company, first.i, way.route, options, sorted((*way.blocks, *passing_by), key=in_order))
+
+
+def _told(company: Company, first: Joined, best: Joined, passers: Sequence[Block], quickest: Route) -> Reroute:
+    """What another way has changed for a robot: whom it goes round, and for whom it goes aside."""
+    robots, route, name = company.problem.robots, best.route, company.problem.robots[first.i].name
     around = sorted(first.own - best.own, key=in_order)
+    places = [(robots[block.resting].name, block.at) for block in around]
     extra = route.time - quickest.time
-    text = joining.gone_round(robots[first.i].name, [(robots[block.resting].name, block.at) for block in around], extra)
+    if passers:
+        when = sorted((passing(company, block)[0], robots[block.driving].name) for block in passers)
+        text = joining.gone_aside(name, [(other, at) for at, other in when], places, extra)
+    else:
+        text = joining.gone_round(name, places, extra)
     arcs = tuple(arc_of(robots, block) for block in around)
-    return Reroute(robots[first.i].name, (), arcs, route.path.length - quickest.path.length, extra, text)
+    return Reroute(name, (), arcs, route.path.length - quickest.path.length, extra, text)
 
 
-def _cannot_join(company: Company, first: _Joined, options: Options) -> Diagnosis:
+def _cannot_join(company: Company, first: Joined, options: Options) -> Diagnosis:
     """Why a robot cannot come last: who would have to make way for it, where and when."""
     robots, name = company.problem.robots, company.problem.robots[first.i].name
     reasons = []
@@ -238,15 +223,7 @@ def _cannot_join(company: Company, first: _Joined, options: Options) -> Diagnosi
         if block.driving == first.i:
             other, when = robots[block.resting], company.profiles[block.resting].arrival
         else:
-            other, when = robots[block.driving], _passing(company, block)
+            other, when = robots[block.driving], passing(company, block)[0]
         reasons.append((other.name, block.at, place_of(robots, block), when))
     may_go_round = not (options.keep_paths or robots[first.i].path)
     return joining.cannot_join(name, sorted(reasons, key=lambda reason: reason[3]), may_go_round=may_go_round)
-
-
-def _passing(company: Company, block: Block) -> float:
-    """When [s] the driving robot of a block is closest to the place."""
-    robots, path = company.problem.robots, company.paths[block.driving]
-    core = conflict_core(robots[block.driving].footprint.core, robots[block.resting].footprint.core)
-    _, s = closest(path, place_of(robots, block), core)
-    return float(time_at(company.profiles[block.driving], np.array([s]))[0])

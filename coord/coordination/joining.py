@@ -1,4 +1,4 @@
-"""Sentences for people about robots that join a plan: why one cannot, or goes round others at rest."""
+"""Sentences for people about robots that join a plan: why one cannot, or takes another way than alone."""
 
 from __future__ import annotations
 
@@ -19,6 +19,14 @@ def gone_round(name: str, around: Sequence[tuple[str, str]], extra: float) -> st
     """A robot on a longer path; ``around`` : names of others with "start" or "goal"; ``extra`` [s] alone."""
     places = _listed([f'"{other}" at its {at}' for other, at in around])
     return f'"{name}" goes round {places}, {extra:.2f} s more alone: those that rest there keep their motion.'
+
+
+def gone_aside(name: str, passers: Sequence[tuple[str, float]], around: Sequence[tuple[str, str]], extra: float) -> str:
+    """A robot that first goes out of the way; ``passers`` : names of those who pass its start, and when [s]."""
+    told = _listed([f'"{other}", which passes its start at {when:.2f} s' for other, when in passers])
+    places = _listed([f'"{other}" at its {at}' for other, at in around]) if around else ""
+    more = f", and goes round {places}" if around else ""
+    return f'"{name}" first goes aside for {told}{more}, {extra:.2f} s more alone: those others keep their motion.'
 
 
 def cannot_join(name: str, reasons: Sequence[tuple[str, str, Point, float]], *, may_go_round: bool = True) -> Diagnosis:

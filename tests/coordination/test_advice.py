@@ -5,7 +5,8 @@ from __future__ import annotations
 import dataclasses
 import re
 
-from coord.coordination.advice import advised
+import coord.plan
+from coord.coordination.advice import MOST_LOOKS, advised
 from coord.model.footprint import Footprint
 from coord.model.obstacle import rectangle
 from coord.model.problem import Problem, Workspace
@@ -60,3 +61,28 @@ def test_nothing_is_told_that_does_not_follow_from_the_named_robots():
     for code, outcome in (("no-way", True), ("time-limit", False)):
         diagnosis = Diagnosis(code, ("a",), "No way.", None, None, "Do something.")
         assert advised(door(1.0), [diagnosis], lambda _, outcome=outcome: outcome) == (diagnosis,)
+
+
+def test_a_try_is_given_up_after_so_many_looks(monkeypatch):
+    """Two robots that swap places in a lane for one: each try, of which there are several, asks no more often than that."""
+    asked = []
+    planned = coord.plan._planned
+
+    def counted(problem, options, progress, time_is_up):
+        asked.append(0)
+
+        def asks():
+            asked[-1] += 1
+            return time_is_up()
+
+        return planned(problem, options, progress, asks)
+
+    monkeypatch.setattr(coord.plan, "_planned", counted)
+    walls = [rectangle(f"wall {k}", (-5.0, y, 5.0, y + 0.2)) for k, y in enumerate((-0.8, 0.6))]
+    pair = robot("a", (-3.0, 0.0), (3.0, 0.0)), robot("b", (3.0, 0.0), (-3.0, 0.0))
+    (told,) = plan(Problem("lane", Workspace((-5.0, -5.0, 5.0, 5.0), 0.05), pair, tuple(walls))).diagnoses
+    assert told.code == "blocking-cycle"
+    whole, *tries = asked
+    assert len(tries) >= 2
+    assert whole > 2 * MOST_LOOKS
+    assert max(tries) == 2 * MOST_LOOKS + 1
