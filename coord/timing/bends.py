@@ -21,13 +21,31 @@ from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.timing.clock import clock
-from coord.timing.links import Link, Node, Stretch, nodes_of, sections
+from coord.timing.links import Link, Node, Stretch, links_of, nodes_of, sections
 
 #: One of so many places is a mark.
 _EVERY = 2
 
 #: [s] Taken off every bound: rounding, which is largest near a stop, stays far below it.
 _ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chains:
+    """The way from node to node.
+
+    Parameters
+    ----------
+    nodes, stretches : all of them, and what lies between neighbours; ``links`` : the same as the nodes are cut now.
+    reached, needed : for the cells of the nodes before and behind each link least times from the start, and to the
+        goal.
+    """
+
+    nodes: Sequence[Node]
+    stretches: Sequence[Stretch]
+    links: list[Link]
+    reached: list[Array]
+    needed: list[Array]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,6 +62,7 @@ class Passages:
     total : least time [s] for the whole way.
     marks : (Q,) some of the places; ``between`` : (Q, Q) how much longer [s] than the motion without jerk every motion
         needs from one of them to another, however it moves at both.
+    chains : what all this was taken from.
     """
 
     places: Array
@@ -54,6 +73,7 @@ class Passages:
     total: float
     marks: Array
     between: Array
+    chains: Chains
 
     def earliest(self, s: Array, clocks: Array) -> Array:
         """Least times (m,) [s] from rest at the start to the arc lengths s (m,) [m].
@@ -95,18 +115,31 @@ class Passages:
         return np.asarray(places[k] + np.clip(share, 0.0, 1.0) * (places[n] - places[k]))
 
 
-def passages(path: Path, limits: Limits, relaxed: VelocityProfile, rounds: int = 0) -> Passages | None:
+def passages(path: Path, limits: Limits, relaxed: VelocityProfile) -> Passages | None:
     """The bounds of a path on which the speed cap varies; None where it is the same everywhere.
 
-    Parameters
-    ----------
-    relaxed : the motion with the jerk forgotten, ``coord.alone.relaxed.without_jerk``.
-    rounds : so often cells are cut: each takes longer than the one before, and halves what the bounds lack.
+    ``relaxed`` : the motion with the jerk forgotten, ``coord.alone.relaxed.without_jerk``.
     """
     ends, caps = sections(path, limits)
     if len(caps) < 2:
         return None
-    chains = _chains(nodes_of(ends, caps, limits, relaxed), ends, caps, limits, rounds)
+    nodes = nodes_of(ends, caps, limits, relaxed)
+    return _passages(_linked([Stretch(a, b, ends, caps, limits) for a, b in itertools.pairwise(nodes)], nodes), relaxed)
+
+
+def narrower(bends: Passages, relaxed: VelocityProfile, rounds: int) -> Passages:
+    """Tighter bounds: so often cells are cut, each time for longer, and half of what the bounds lack is gained.
+
+    Cells are cut where the bounds come from: elsewhere narrower ones would change nothing.
+    """
+    chains = bends.chains
+    for _ in range(rounds):
+        nodes = [node.split(cells) for node, cells in zip(chains.nodes, _decisive(chains), strict=True)]
+        chains = _linked(chains.stretches, nodes)
+    return _passages(chains, relaxed)
+
+
+def _passages(chains: Chains, relaxed: VelocityProfile) -> Passages:
     links = chains.links
     places = np.concatenate([link.places for link in links])
     early, early_lines = _over_places(chains.reached, [(link.since, link.since_lines) for link in links])
@@ -119,7 +152,7 @@ def passages(path: Path, limits: Limits, relaxed: VelocityProfile, rounds: int =
     return Passages(
         frozen(places), frozen(np.maximum(late - _ROUNDING, 0.0)), frozen(np.maximum(long - _ROUNDING, 0.0)),
         frozen(early_lines - _ROUNDING, 2), frozen(still_lines[:, ::-1] - _ROUNDING, 2),
-        total - _ROUNDING, *_between(links, relaxed),
+        total - _ROUNDING, *_between(links, relaxed), chains,
     )  # fmt: skip
 
 
@@ -137,36 +170,17 @@ def _over_places(before: Sequence[Array], links: Sequence[tuple[Array, Array]]) 
     return at, np.maximum.accumulate(lines.ravel()).reshape(-1, 2)  # they rise but for rounding
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Chains:
-    """Links, and for the cells of the nodes before and behind each: least times from the start, and to the goal."""
-
-    links: list[Link]
-    reached: list[Array]
-    needed: list[Array]
-
-
-def _chains(nodes: Sequence[Node], ends: Array, caps: Array, limits: Limits, rounds: int) -> _Chains:
-    """Cells are cut where the bounds come from: elsewhere narrower ones would change nothing."""
-    stretches = [Stretch(a, b, ends, caps, limits) for a, b in itertools.pairwise(nodes)]
-    chains = _linked(stretches, nodes)
-    for _ in range(rounds):
-        nodes = [node.split(cells) for node, cells in zip(nodes, _decisive(chains), strict=True)]
-        chains = _linked(stretches, nodes)
-    return chains
-
-
-def _linked(stretches: Sequence[Stretch], nodes: Sequence[Node]) -> _Chains:
-    links = [stretch.link(a, b) for stretch, (a, b) in zip(stretches, itertools.pairwise(nodes), strict=True)]
+def _linked(stretches: Sequence[Stretch], nodes: Sequence[Node]) -> Chains:
+    links = links_of(stretches, nodes)
     reached, needed = [np.zeros(1)], [np.zeros(1)]
     for link in links:
         reached.append((reached[-1][:, None] + link.times).min(axis=0))
     for link in reversed(links):
         needed.append((link.times + needed[-1][None]).min(axis=1))
-    return _Chains(links, reached, needed[-2::-1])
+    return Chains(nodes, stretches, links, reached, needed[-2::-1])
 
 
-def _decisive(chains: _Chains) -> list[npt.NDArray[np.bool_]]:
+def _decisive(chains: Chains) -> list[npt.NDArray[np.bool_]]:
     """Which cells of each node some bound comes from."""
     links, reached, needed = chains.links, chains.reached, [*chains.needed]
     ahead = [np.zeros(len(cells), bool) for cells in reached]

@@ -15,7 +15,7 @@ from coord.model.arrays import Array
 from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Robot
-from coord.timing.bends import Passages, passages
+from coord.timing.bends import Passages, narrower, passages
 from coord.timing.clock import clock
 
 
@@ -62,10 +62,10 @@ def ego(robot: Robot, path: Path, alone: VelocityProfile | None = None) -> Ego:
 
 
 def sharpened(one: Ego, rounds: int) -> Ego:
-    """The same with tighter bounds of what bends cost, which take some tens of milliseconds; see ``passages``."""
-    bends = passages(one.path, one.robot.limits, one.relaxed, rounds)
-    if bends is None:
+    """The same with tighter bounds of what bends cost, which take some tens of milliseconds; see ``narrower``."""
+    if one.bends is None:
         return one
+    bends = narrower(one.bends, one.relaxed, rounds)
     bound = min(max(one.solo_bound, one.robot.release + bends.total), one.alone.arrival)
     return dataclasses.replace(one, bends=bends, solo_bound=bound)
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ from coord.model.path import Path
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
 from coord.timing.clock import clock
-from coord.timing.quickest import ramps
+from coord.timing.quickest import Ramps, Rows, ramps
 from coord.timing.transfer import least_times, rise
 from coord.tolerances import SAME_PLACE
 
@@ -104,48 +105,93 @@ class Link:
     times: Array
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Side:
+    """A way that begins at a node, with the least times from states there that are known.
+
+    Parameters
+    ----------
+    steps, caps : (P,) [m], [m/s] of its parts; ``top`` : the highest cap of the whole path.
+    most : limit [m/s2] of the acceleration.
+    known : for speeds and accelerations the times to its places, and what lines in between have.
+    """
+
+    steps: Array
+    caps: Array
+    top: float
+    most: float
+    known: dict[tuple[float, float], tuple[Array, Array]] = field(default_factory=dict)
+
+    def rows(self, speeds: Array, accelerations: Array) -> tuple[Array, Array]:
+        """Of states that are known: times (n, P+1) [s], and (n, P) what the lines have at the parts' ends."""
+        rows = [self.known[state] for state in zip(speeds.tolist(), accelerations.tolist(), strict=True)]
+        return np.stack([at for at, _ in rows]), np.stack([lines for _, lines in rows])
+
+    @property
+    def is_free(self) -> bool:
+        """Whether no cap holds anybody up."""
+        return bool(np.all(self.caps >= self.top))
+
+
 class Stretch:
     """What two neighbouring nodes' links have in common, however their cells are cut."""
 
     def __init__(self, a: Node, b: Node, ends: Array, caps: Array, limits: Limits) -> None:
         self.limits, self.length = limits, b.s - a.s
-        self.top = float(caps.max())
         borders = ends[(ends > a.s + SAME_PLACE) & (ends < b.s - SAME_PLACE)]
         self.places = np.unique(np.concatenate([[a.s, b.s], a.s + _graded(self.length), borders]))
         between = (self.places[:-1] + self.places[1:]) / 2
-        self.caps = caps[np.minimum(np.searchsorted(ends, between, side="right"), len(caps) - 1)]
-        self.peak = float(self.caps.max())
-        self._since: dict[tuple[float, float], tuple[Array, Array]] = {}
-        self._until: dict[tuple[float, float], tuple[Array, Array]] = {}
+        own = caps[np.minimum(np.searchsorted(ends, between, side="right"), len(caps) - 1)]
+        self.peak, top, steps = float(own.max()), float(caps.max()), np.diff(self.places)
+        self.ahead = _Side(steps, own, top, limits.acceleration)
+        self.back = _Side(steps[::-1], own[::-1], top, limits.deceleration)
 
-    def link(self, a: Node, b: Node) -> Link:
-        """The link of the nodes as they are cut now."""
-        limits, steps = self.limits, np.diff(self.places)
-        ahead = self._rows(self._since, a.speeds, a.high, steps, self.caps, limits.acceleration)
-        back = self._rows(self._until, b.speeds, -b.low, steps[::-1], self.caps[::-1], limits.deceleration)
-        since, until = ahead.at, back.at[:, ::-1]
+    def link(self, a: Node, b: Node, least: Array) -> Link:
+        """The link of the nodes as they are cut now; ``least`` : (n, m) times from cell to cell for another reason."""
+        since, ahead_lines = self.ahead.rows(a.speeds, a.high)
+        until, back_lines = self.back.rows(b.speeds, -b.low)
+        until, back_lines = until[:, ::-1], back_lines[:, ::-1]
         some = np.unique(np.linspace(0, len(self.places) - 1, _MEETINGS).astype(int))
-        times = (since[:, None, some] + until[None, :, some]).max(axis=2)
+        times = np.maximum(least, (since[:, None, some] + until[None, :, some]).max(axis=2))
         # from the one acceleration to the other takes time as well
-        np.maximum(times, (b.low[None] - a.high[:, None]) / limits.jerk, out=times)
-        np.maximum(times, (a.low[:, None] - b.high[None]) / limits.jerk, out=times)
-        first = rise(a.speeds, a.low, a.high, limits.acceleration, limits.jerk, self.peak)
-        last = rise(b.speeds, -b.high, -b.low, limits.deceleration, limits.jerk, self.peak)
-        np.maximum(times, least_times(first, last, self.length, self.peak), out=times)
-        return Link(self.places, since, ahead.lines, until, back.lines[:, ::-1], times)
+        np.maximum(times, (b.low[None] - a.high[:, None]) / self.limits.jerk, out=times)
+        np.maximum(times, (a.low[:, None] - b.high[None]) / self.limits.jerk, out=times)
+        return Link(self.places, since, ahead_lines, until, back_lines, times)
 
-    def _rows(
-        self, known: dict[tuple[float, float], tuple[Array, Array]], speeds: Array, accelerations: Array, steps: Array,
-        caps: Array, most: float,
-    ) -> _Times:  # fmt: skip
-        """From speeds and accelerations (n,); those worked out once are kept."""
-        states = list(zip(speeds.tolist(), accelerations.tolist(), strict=True))
-        missing = np.array([state for state in states if state not in known])
-        if len(missing):
-            found = _times(missing[:, 0], missing[:, 1], steps, caps, self.top, most, self.limits.jerk)
-            known.update(zip(map(tuple, missing.tolist()), zip(found.at, found.lines, strict=True), strict=True))
-        rows = [known[state] for state in states]
-        return _Times(np.stack([at for at, _ in rows]), np.stack([lines for _, lines in rows]))
+
+def links_of(stretches: Sequence[Stretch], nodes: Sequence[Node]) -> list[Link]:
+    """The links of neighbouring nodes as they are cut now; what takes time is worked out for all of them at once."""
+    asked = []
+    for stretch, (a, b) in zip(stretches, itertools.pairwise(nodes), strict=True):
+        asked += [(stretch.ahead, a.speeds, a.high), (stretch.back, b.speeds, -b.low)]
+    _learn(asked, stretches[0].limits.jerk)
+    tables = _least_tables(stretches, nodes)
+    return [
+        stretch.link(a, b, least)
+        for stretch, (a, b), least in zip(stretches, itertools.pairwise(nodes), tables, strict=True)
+    ]
+
+
+def _least_tables(stretches: Sequence[Stretch], nodes: Sequence[Node]) -> list[Array]:
+    """For each link the least times (n, m) between states at both ends in closed form."""
+    limits, from_, to = stretches[0].limits, nodes[:-1], nodes[1:]
+    sizes = [(len(a.low), len(b.low)) for a, b in itertools.pairwise(nodes)]
+    n, m, area = np.array([(n, m, n * m) for n, m in sizes]).T
+    peaks, lengths = np.array([(stretch.peak, stretch.length) for stretch in stretches]).T
+    first = rise(
+        np.concatenate([a.speeds for a in from_]), np.concatenate([a.low for a in from_]),
+        np.concatenate([a.high for a in from_]), np.full(n.sum(), limits.acceleration), limits.jerk,
+        np.repeat(peaks, n),
+    )  # fmt: skip
+    last = rise(
+        np.concatenate([b.speeds for b in to]), np.concatenate([-b.high for b in to]),
+        np.concatenate([-b.low for b in to]), np.full(m.sum(), limits.deceleration), limits.jerk, np.repeat(peaks, m),
+    )  # fmt: skip
+    of_link = np.arange(area.sum()) - np.repeat(np.cumsum(area) - area, area)
+    row, column = np.divmod(of_link, np.repeat(m, area))
+    row, column = row + np.repeat(np.cumsum(n) - n, area), column + np.repeat(np.cumsum(m) - m, area)
+    found = least_times(first.of(row), last.of(column), np.repeat(lengths, area), np.repeat(peaks, area))
+    return [part.reshape(size) for part, size in zip(np.split(found, np.cumsum(area)[:-1]), sizes, strict=True)]
 
 
 def _graded(length: float) -> Array:
@@ -207,32 +253,72 @@ def _accelerations(speed: float, limits: Limits) -> Array:
     return np.linspace(-min(limits.deceleration, most), min(limits.acceleration, most), _CELLS + 1)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Times:
-    """Least times (n, P) [s] from n accelerations to P places, and (n, P-1) what lines from one place have at the next.
+def _learn(asked: Sequence[tuple[_Side, Array, Array]], jerk: float) -> None:
+    """Work out the least times from states, speeds (n,) [m/s] and accelerations (n,) [m/s2], that are not known yet."""
+    groups: list[tuple[_Side, list[tuple[float, float]]]] = []
+    for side, speeds, accelerations in asked:
+        wanted = dict.fromkeys(zip(speeds.tolist(), accelerations.tolist(), strict=True))
+        missing = [state for state in wanted if state not in side.known]
+        groups += [(side, missing)] if missing else []
+    if not groups:
+        return
+    counts = [len(states) for _, states in groups]
+    speeds, accelerations = np.array([state for _, states in groups for state in states]).T
+    most = np.repeat([side.most for side, _ in groups], counts)
+    quickest = ramps(speeds, accelerations, groups[0][0].top, most, jerk)
+    rows = np.split(np.arange(len(speeds)), np.cumsum(counts)[:-1])
+    free = [k for k, (side, _) in enumerate(groups) if side.is_free]
+    held = [k for k, (side, _) in enumerate(groups) if not side.is_free]
+    at: dict[int, Array] = {}
+    for some, times in ((free, _unhindered), (held, _hindered)):
+        at |= dict(zip(some, times(quickest, [(groups[k][0], rows[k]) for k in some]) if some else (), strict=True))
+    lines = _lines(quickest, [(side, rows[k], at[k]) for k, (side, _) in enumerate(groups)])
+    for k, (side, states) in enumerate(groups):
+        side.known.update(zip(states, zip(at[k], lines[k], strict=True), strict=True))
 
-    In between no motion is earlier than the line.
+
+def _unhindered(quickest: Ramps, sides: Sequence[tuple[_Side, Rows]]) -> list[Array]:
+    """Times (n, P+1) [s] of some ramps to the places of ways on which no cap holds anybody up."""
+    tables = [np.repeat(np.append(0.0, np.cumsum(side.steps))[None], len(row), axis=0) for side, row in sides]
+    which = np.concatenate([np.repeat(row, table.shape[1]) for (_, row), table in zip(sides, tables, strict=True)])
+    return _apart(quickest.time(np.concatenate([table.ravel() for table in tables]), which), tables)
+
+
+def _hindered(quickest: Ramps, sides: Sequence[tuple[_Side, Rows]]) -> list[Array]:
+    """The same where caps do: part after part no more quickly than the cap, nor than the ramp from then on."""
+    longest = max(len(side.steps) for side, _ in sides)
+    steps = np.concatenate([_padded(side.steps, longest, 0.0, len(row)) for side, row in sides])
+    caps = np.concatenate([_padded(side.caps, longest, np.inf, len(row)) for side, row in sides])
+    which = np.concatenate([row for _, row in sides])
+    at = np.zeros((len(which), longest + 1))
+    for p in range(longest):
+        ramped = quickest.time(quickest.way(at[:, p], which) + steps[:, p], which)
+        at[:, p + 1] = np.maximum(at[:, p] + steps[:, p] / caps[:, p], ramped)
+    parts = np.split(at, np.cumsum([len(row) for _, row in sides])[:-1])
+    return [part[:, : len(side.steps) + 1] for part, (side, _) in zip(parts, sides, strict=True)]
+
+
+def _padded(values: Array, length: int, with_: float, rows: int) -> Array:
+    row = np.concatenate([values, np.full(length - len(values), with_)])
+    return np.repeat(row[None], rows, axis=0)
+
+
+def _lines(quickest: Ramps, sides: Sequence[tuple[_Side, Rows, Array]]) -> list[Array]:
+    """For times (n, P+1) what lines (n, P) [s] from one place have at the next, below all motions in between.
+
+    Who gains speed is nowhere before the straight line; who loses some no faster than at one of both ends.
     """
+    which = np.concatenate([np.repeat(row, at.shape[1]) for _, row, at in sides])
+    fast = _apart(quickest.speed(np.concatenate([at.ravel() for *_, at in sides]), which), [at for *_, at in sides])
+    found = []
+    for (side, row, at), speeds in zip(sides, fast, strict=True):
+        slower = at[:, :-1] + side.steps / np.maximum(np.maximum(speeds[:, :-1], speeds[:, 1:]), _SLOWEST)
+        loses = at[:, :-1] < quickest.dips[row, None]
+        found.append(np.where(loses, np.minimum(slower, at[:, 1:]), at[:, 1:]))
+    return found
 
-    at: Array
-    lines: Array
 
-
-def _times(
-    speeds: Array, accelerations: Array, steps: Array, caps: Array, top: float, most: float, jerk: float
-) -> _Times:
-    """To the places after the steps (P-1,) [m], from a speed [m/s] and accelerations (n,) [m/s2]."""
-    quickest = ramps(speeds, accelerations, top, most, jerk)
-    n = len(accelerations)
-    if bool(np.all(caps >= top)):
-        at = quickest.time(np.repeat(np.append(0.0, np.cumsum(steps))[None], n, axis=0))
-    else:
-        at = np.zeros((n, len(steps) + 1))
-        for p, (step, cap) in enumerate(zip(steps.tolist(), caps.tolist(), strict=True)):
-            now = at[:, p : p + 1]
-            ramped = quickest.time(quickest.way(now) + step)
-            at[:, p + 1] = np.maximum(now + step / cap, ramped)[:, 0]
-    # who gains speed is nowhere before the straight line; who loses some no faster than at one of both ends
-    fast = quickest.speed(at)
-    slower = at[:, :-1] + steps / np.maximum(np.maximum(fast[:, :-1], fast[:, 1:]), _SLOWEST)
-    return _Times(at, np.where(at[:, :-1] < quickest.dips[:, None], np.minimum(slower, at[:, 1:]), at[:, 1:]))
+def _apart(values: Array, tables: Sequence[Array]) -> list[Array]:
+    """Values one after the other in the shapes of tables."""
+    parts = np.split(values, np.cumsum([table.size for table in tables])[:-1])
+    return [part.reshape(table.shape) for part, table in zip(parts, tables, strict=True)]

@@ -77,7 +77,7 @@ def time_robot(
     if first_violated(meetings, ego.alone) is None:
         return _finished(ego.alone, meetings, "alone", ego.solo_bound, 0, False)
     found = _found(ego, meetings, certify=certify, hurried=hurried)
-    if found.is_loose and not hurried and len(found.search.known) <= _FEW:
+    if not hurried and len(found.search.known) <= _FEW and found.is_loose:
         finer = [meeting.refined() for meeting in meetings]
         found = found.or_rather(_found(ego, finer, certify=certify, is_last=True))
     search = found.search
@@ -101,9 +101,15 @@ class _Found:
 
     @property
     def is_loose(self) -> bool:
-        """Whether windows that are nearer to the truth may gain something worth their cost."""
-        gap = 1 - self.bound / self.search.best.arrival
-        return self.is_open or gap > (CLOSED if self.search.ego.caps.is_constant else _ENOUGH)
+        """Whether windows that are nearer to the truth may settle something: a choice, or a gap that is too large.
+
+        Bounds from them lie below those from the windows at hand, which forbid more than the truth.
+        """
+        search, arrival = self.search, self.search.best.arrival
+        few = arrival * (1 - (CLOSED if search.ego.caps.is_constant else _ENOUGH))
+        if self.is_open or self.bound >= few:
+            return self.is_open
+        return least_arrival(search.ego, [search.claim(index) for index in sorted(search.known)], arrival) >= few
 
     def or_rather(self, other: _Found) -> _Found:
         """The earlier of both, with what both have shown; the later one's choices say nothing if it is much later."""

@@ -8,11 +8,16 @@ v' = f(t, v) that starts no slower and with no less acceleration, and the way li
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.alone.inverse import increasing_root
 from coord.model.arrays import Array
+
+#: Which ramps are meant.
+Rows: TypeAlias = npt.NDArray[np.intp]
 
 #: [m] Ways are asked for that much shorter: more than rounding can do, also where a ramp almost stands still.
 _ROUNDING = 1e-12
@@ -35,18 +40,19 @@ class Ramps:
     top: float
     dips: Array
 
-    def way(self, times: Array) -> Array:
-        """Ways (n, m) [m] after the times (n, m) [s]."""
-        return self._at(times)[0]
+    def way(self, times: Array, row: Rows | None = None) -> Array:
+        """Ways [m] after times [s], (n, m) or, of the ramps ``row``, (m,)."""
+        return self._at(times, row)[0]
 
-    def speed(self, times: Array) -> Array:
-        """Speeds (n, m) [m/s] after the times (n, m) [s]."""
-        return self._at(times)[1]
+    def speed(self, times: Array, row: Rows | None = None) -> Array:
+        """Speeds [m/s] after times [s], likewise."""
+        return self._at(times, row)[1]
 
-    def time(self, ways: Array) -> Array:
-        """Times (n, m) [s] before which no ramp has gone the ways (n, m) [m]; short by rounding at most."""
-        phase = np.maximum((self.states[:, None, :, 0] <= ways[:, :, None]).sum(axis=2) - 1, 0)
-        row = np.broadcast_to(np.arange(len(ways))[:, None], ways.shape)
+    def time(self, ways: Array, row: Rows | None = None) -> Array:
+        """Times [s] before which no ramp has gone some ways [m], likewise; short by rounding at most."""
+        row = self._rows(row)
+        phase = np.maximum((self.states[row, :, 0] <= ways[..., None]).sum(axis=-1) - 1, 0)
+        row = np.broadcast_to(row, ways.shape)
         (s, v, a), begin = np.moveaxis(self.states[row, phase], -1, 0), self.knots[row, phase]
         more = np.maximum(ways - _ROUNDING - s, 0.0)
         times = begin + more / self.top
@@ -57,17 +63,23 @@ class Ramps:
             times[bent] = begin[bent] + increasing_root(cubic, self.knots[k, p + 1] - begin[bent])
         return np.asarray(times)
 
-    def _at(self, times: Array) -> tuple[Array, Array]:
-        phase = (self.knots[:, None, 1:] <= times[:, :, None]).sum(axis=2)
-        row = np.arange(len(times))[:, None]
+    def _at(self, times: Array, row: Rows | None) -> tuple[Array, Array]:
+        row = self._rows(row)
+        phase = (self.knots[row, 1:] <= times[..., None]).sum(axis=-1)
         s, v, a = np.moveaxis(self.states[row, phase], -1, 0)
         h = times - self.knots[row, phase]
         j = np.append(self.jerks, 0.0)[phase]
         return np.asarray(s + h * (v + h * (a / 2 + h * j / 6))), np.asarray(v + h * (a + h * j / 2))
 
+    def _rows(self, row: Rows | None) -> Rows:
+        return np.arange(len(self.knots))[:, None] if row is None else row
 
-def ramps(speeds: Array, accelerations: Array, top: float, most: float, jerk: float) -> Ramps:
-    """The ramps from speeds (n,) [m/s] and accelerations (n,) [m/s2] up to ``top``, within ``most`` and ``jerk``."""
+
+def ramps(speeds: Array, accelerations: Array, top: float, most: Array | float, jerk: float) -> Ramps:
+    """The ramps from speeds (n,) [m/s] and accelerations (n,) [m/s2] up to ``top``.
+
+    They keep within accelerations ``most``, (n,) or one for all [m/s2], and ``jerk`` [m/s3].
+    """
     spare = np.maximum(top - speeds, 0.0)
     # a speed that leaves no room for the acceleration to end: the comparison starts with what there is room for
     a = np.minimum(accelerations, np.sqrt(2 * jerk * spare))

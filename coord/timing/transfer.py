@@ -11,11 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coord.model.arrays import Array
 
 #: Newton steps for the greatest speed; they come down to it from above, so few are enough.
 _STEPS = 7
+
+#: [m/s] Steps below this are the last.
+_SETTLED = 1e-10
 
 #: [m/s] The greatest speed is taken a little too low by this, and by so many times the last step.
 _BELOW, _STEP_SHARE = 1e-9, 2.0
@@ -25,12 +29,15 @@ _BELOW, _STEP_SHARE = 1e-9, 2.0
 class Rise:
     """The quickest ways (n,) from speeds [m/s] and accelerations up to any greater speed without acceleration.
 
-    ``most`` [m/s2], ``jerk`` [m/s3] : limits. ``virtual`` : (n,) the speed [m/s] from which, at rest in acceleration,
-    the same rise would have begun ``since`` (n,) [s] and ``behind`` (n,) [m] earlier; ``least`` : (n,) the least
-    greatest speed [m/s] that says something.
+    Parameters
+    ----------
+    most, jerk : limits (n,) [m/s2] and [m/s3].
+    virtual : (n,) the speed [m/s] from which, without acceleration, the same rise would have begun ``since`` (n,) [s]
+        and ``behind`` (n,) [m] earlier.
+    least : (n,) the least greatest speed [m/s] that says something.
     """
 
-    most: float
+    most: Array
     jerk: float
     virtual: Array
     since: Array
@@ -38,15 +45,15 @@ class Rise:
     least: Array
 
     def time(self, speed: Array) -> Array:
-        """The time [s] up to a speed, (n,) or what broadcasts with it."""
+        """The times (n,) [s] up to speeds (n,)."""
         return self._whole(speed) - self.since
 
     def way(self, speed: Array) -> Array:
-        """The way [m] up to a speed."""
+        """The ways (n,) [m] up to speeds (n,)."""
         return (self.virtual + speed) / 2 * self._whole(speed) - self.behind
 
     def growth(self, speed: Array) -> Array:
-        """How quickly the way grows with the speed [s]."""
+        """How quickly the ways (n,) grow with the speeds (n,) [s]."""
         more = np.maximum(speed - self.virtual, 1e-300)
         long = speed / self.most + self.most / (2 * self.jerk)
         short = np.sqrt(more / self.jerk) + (self.virtual + speed) / (2 * np.sqrt(more * self.jerk))
@@ -58,17 +65,17 @@ class Rise:
             more >= self.most**2 / self.jerk, more / self.most + self.most / self.jerk, 2 * np.sqrt(more / self.jerk)
         )
 
-    def along(self, axis: int) -> Rise:
-        """The same as a column (axis 0) or a row (axis 1) of a table."""
-        arrays = (self.virtual, self.since, self.behind, self.least)
-        return Rise(self.most, self.jerk, *(np.expand_dims(values, 1 - axis) for values in arrays))
+    def of(self, some: npt.NDArray[np.intp]) -> Rise:
+        """Some of them, in that order."""
+        arrays = (self.virtual[some], self.since[some], self.behind[some], self.least[some])
+        return Rise(self.most[some], self.jerk, *arrays)
 
 
-def rise(speed: Array, low: Array, high: Array, most: float, jerk: float, top: float) -> Rise:
+def rise(speed: Array, low: Array, high: Array, most: Array, jerk: float, top: Array) -> Rise:
     """The rises of motions that begin with at most speeds (n,) [m/s], accelerations between two (n,), (n,) [m/s2].
 
-    ``top`` : they never go faster [m/s]. Where the acceleration falls from the beginning on, the greatest speed may
-    have been before, so that no lesser one than that counts.
+    ``most`` : (n,) limits [m/s2] of the acceleration; ``top`` : (n,) they never go faster [m/s]. Where the acceleration
+    falls from the beginning on, the greatest speed may have been before, so that no lesser one than that counts.
     """
     # a speed that leaves no room for the acceleration to end: the comparison starts with what there is room for
     a = np.minimum(high, np.sqrt(2 * jerk * np.maximum(top - speed, 0.0)))
@@ -79,28 +86,34 @@ def rise(speed: Array, low: Array, high: Array, most: float, jerk: float, top: f
     return Rise(most, jerk, virtual, since, behind, least)
 
 
-def least_times(first: Rise, last: Rise, length: float, top: float) -> Array:
-    """Times (n, m) [s] that no motion of a length [m] beats, from each beginning of the one to each of the other.
+def least_times(first: Rise, last: Rise, length: Array, top: Array) -> Array:
+    """Times (n,) [s] that no motion of lengths (n,) [m] beats, from the beginning of the one to that of the other.
 
-    The other is read backwards. ``top`` : the motions never go faster [m/s]. 0 where the way is too short for a rise
-    and a fall: then other bounds must do.
+    The other is read backwards. ``top`` : (n,) the motions never go faster [m/s]. 0 where the way is too short for a
+    rise and a fall: then other bounds must do.
     """
-    up, down = first.along(0), last.along(1)
-    low = np.maximum(up.least, down.least)
+    low = np.maximum(first.least, last.least)
+    spare = length - first.way(top) - last.way(top)
+    times = first.time(top) + last.time(top) + np.maximum(spare, 0.0) / top
+    slower = np.flatnonzero(spare < 0)
+    some = first.of(slower), last.of(slower), length[slower], top[slower], low[slower]
+    times[slower] = _below_top(*some)
+    fits = (low <= top) & (length - first.way(low) - last.way(low) >= 0)
+    return np.where(fits, times, 0.0)
+
+
+def _below_top(first: Rise, last: Rise, length: Array, top: Array, low: Array) -> Array:
+    """The same where rise and fall up to the top speed are longer than the way: they fill it."""
 
     def spare(speed: Array) -> Array:
-        return np.asarray(length - up.way(speed) - down.way(speed))
+        return np.asarray(length - first.way(speed) - last.way(speed))
 
-    at_top = np.full(low.shape, top)
-    cruised = spare(at_top)
-    times = up.time(at_top) + down.time(at_top) + np.maximum(cruised, 0.0) / top
-    is_slower = cruised < 0
-    if is_slower.any():
-        speed, step = at_top, np.zeros_like(low)
-        for _ in range(_STEPS):
-            step = spare(speed) / (up.growth(speed) + down.growth(speed))
-            speed = np.maximum(speed + np.minimum(step, 0.0), low)
-        below = np.maximum(speed - _BELOW - _STEP_SHARE * np.abs(step), low)
-        below = np.where(spare(below) >= 0, below, low)
-        times = np.where(is_slower, up.time(below) + down.time(below), times)
-    return np.where((low <= top) & (spare(low) >= 0), times, 0.0)
+    speed, step = top, np.zeros_like(low)
+    for _ in range(_STEPS):
+        step = spare(speed) / (first.growth(speed) + last.growth(speed))
+        speed = np.maximum(speed + np.minimum(step, 0.0), low)
+        if np.abs(step).max(initial=0.0) < _SETTLED:
+            break
+    below = np.maximum(speed - _BELOW - _STEP_SHARE * np.abs(step), low)
+    below = np.where(spare(below) >= 0, below, low)
+    return first.time(below) + last.time(below)

@@ -24,9 +24,10 @@ def scene(seed):
 
 def bound(limits, speeds, low, high, length):
     """The closed form for one cell of accelerations at either end."""
-    first = rise(np.array([speeds[0]]), low[:1], high[:1], limits.acceleration, limits.jerk, limits.speed)
-    last = rise(np.array([speeds[1]]), -high[1:], -low[1:], limits.deceleration, limits.jerk, limits.speed)
-    return float(least_times(first, last, length, limits.speed)[0, 0])
+    speed, rising, falling = (np.array([limit]) for limit in (limits.speed, limits.acceleration, limits.deceleration))
+    first = rise(np.array([speeds[0]]), low[:1], high[:1], rising, limits.jerk, speed)
+    last = rise(np.array([speeds[1]]), -high[1:], -low[1:], falling, limits.jerk, speed)
+    return float(least_times(first, last, np.array([length]), speed)[0])
 
 
 @pytest.mark.parametrize("seed", range(60))
