@@ -19,7 +19,7 @@ def time_at(profile: VelocityProfile, s: npt.ArrayLike) -> Array:
     if not len(profile.jerks):
         return np.full(len(s), profile.departure)
     knots = np.maximum.accumulate(profile.states[:, 0])
-    k = np.clip(np.searchsorted(knots, s, side="left") - 1, 0, len(profile.jerks) - 1)
+    k = np.maximum(np.minimum(knots.searchsorted(s, side="left") - 1, len(profile.jerks) - 1), 0)
     s0, v, a = profile.states[k].T
     h = np.diff(profile.times)[k]
     u = increasing_root(np.stack([s0 - s, v, a / 2, profile.jerks[k] / 6]), h)

@@ -45,14 +45,17 @@ def excess(profile: VelocityProfile, window: Window) -> Excess:
         last = max(profile.arrival, float(window.times[-2])) + 1.0
     edges = np.concatenate([window.times[:-1], [last]])
     inside = profile.times[(profile.times > first) & (profile.times < last)]
-    times = np.unique(np.concatenate([edges, inside]))
+    times = np.sort(np.concatenate([edges, inside]))
+    times = times[np.append(True, times[1:] > times[:-1])]
     start, h = times[:-1], np.diff(times)
     # the middle of a part of one ulp is one of its ends: hence the clip
-    strip = np.clip(np.searchsorted(edges, start + h / 2, side="right") - 1, 0, len(edges) - 2)
+    middle = start + h / 2
+    strip = np.maximum(np.minimum(edges.searchsorted(middle, side="right") - 1, len(edges) - 2), 0)
     state = profile.state(start)
     moving = (start >= profile.departure) & (start < profile.arrival)
     if len(profile.jerks):
-        phase = np.clip(np.searchsorted(profile.times, start + h / 2, side="right") - 1, 0, len(profile.jerks) - 1)
+        phase = np.minimum(profile.times.searchsorted(middle, side="right") - 1, len(profile.jerks) - 1)
+        phase = np.maximum(phase, 0)
         jerk = np.where(moving, profile.jerks[phase], 0.0)
     else:
         jerk = np.zeros_like(start)
@@ -78,7 +81,7 @@ def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) ->
     q = -(c2 + np.where(c2 >= 0, root, -root))
     with np.errstate(divide="ignore", invalid="ignore"):
         u1, u2 = q / (3 * c3), c1 / q
-    candidates = np.stack([np.zeros_like(h), h, u1, u2])
-    candidates = np.where(np.isfinite(candidates), np.clip(candidates, 0.0, h), 0.0)
+    # fmin and fmax: a root that is none is an end
+    candidates = np.fmin(np.fmax(np.stack([h, u1, u2]), 0.0), h)
     values = c0 + candidates * (c1 + candidates * (c2 + candidates * c3))
-    return np.asarray(values.max(axis=0))
+    return np.asarray(np.maximum(values.max(axis=0), c0))

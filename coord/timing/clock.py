@@ -13,8 +13,8 @@ from coord.model.profile import VelocityProfile
 
 def clock(relaxed: VelocityProfile, s: Array) -> Array:
     """The times (m,) [s] at which the motion without jerk is at the arc lengths s (m,) [m], or at the nearer end."""
-    s = np.clip(s, 0.0, relaxed.length)
-    k = np.clip(np.searchsorted(relaxed.states[:, 0], s, side="right") - 1, 0, len(relaxed.times) - 2)
+    s = np.minimum(np.maximum(s, 0.0), relaxed.length)
+    k = np.maximum(np.minimum(relaxed.states[:, 0].searchsorted(s, side="right") - 1, len(relaxed.times) - 2), 0)
     s0, v, a = relaxed.states[k].T
     root = v + np.sqrt(np.maximum(v * v + 2 * a * (s - s0), 0.0))
     u = np.divide(2 * (s - s0), root, out=np.zeros_like(s), where=root > 0)

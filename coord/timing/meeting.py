@@ -98,10 +98,9 @@ class Meeting:
     def _side(self, profile: VelocityProfile) -> bool | None:
         """Whether the box alone shows that a profile passes after (True) or before (False); None where it does not."""
         first, last, low, high = self.box
-        s = profile.state([first, min(last, max(profile.arrival, first))])[:, 0]
-        if s[1] <= low:
+        if profile.place(min(last, max(profile.arrival, first))) <= low:
             return True
-        return False if s[0] >= high else None
+        return False if profile.place(first) >= high else None
 
     def excess(self, profile: VelocityProfile) -> Excess | None:
         """How far the profile is from passing on one side; None where the box shows that it does."""

@@ -21,7 +21,7 @@ from coord.tolerances import OPTIMAL
 #: To close the gap to a robot's bound: so many relaxations are solved at most, and a gap below such a share of the
 #: arrival is left as it is. The second effort is made where proof is asked for.
 _ENOUGH = 5e-3
-_EFFORTS = ((60, _ENOUGH), (600, CLOSED))
+_EFFORTS = ((40, _ENOUGH), (600, CLOSED))
 
 #: Where more meetings came up than these, windows are not refined, and so many relaxations do.
 _FEW, _MOST_OF_MANY = 16, 20
