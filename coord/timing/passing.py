@@ -103,12 +103,15 @@ class _Found:
     def is_loose(self) -> bool:
         """Whether windows that are nearer to the truth may settle something: a choice, or a gap that is too large.
 
-        Bounds from them lie below those from the windows at hand, which forbid more than the truth.
+        Bounds from them lie below those from the windows at hand, which forbid more than the truth; only a program may
+        gain by finer grids as well.
         """
         search, arrival = self.search, self.search.best.arrival
         few = arrival * (1 - (CLOSED if search.ego.caps.is_constant else _ENOUGH))
         if self.is_open or self.bound >= few:
             return self.is_open
+        if search.how == "program":
+            return True
         return least_arrival(search.ego, [search.claim(index) for index in sorted(search.known)], arrival) >= few
 
     def or_rather(self, other: _Found) -> _Found:
