@@ -8,6 +8,7 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -167,14 +168,14 @@ def _round_bends(
     settled = first_guess(ego, course, attempt.departure, most)
     meshes = (*_MESHES_OF_BENDS, _FINER_MESH_OF_BENDS) if fine else _MESHES_OF_BENDS
     lacked = np.inf
-    for mesh in meshes:
+    for mesh, finer in itertools.pairwise((*meshes, None)):
         if mesh == _FINER_MESH_OF_BENDS and settled.lacks > _LESS * lacked:
             break
         lacked, is_first, least_lacking = settled.lacks, mesh == meshes[0], settled
         for found in rounds(ego, tube, attempt.limits, mesh, most, settled, is_first=is_first, many=fine):
             settled, least_lacking = found, min(least_lacking, found, key=lambda one: one.lacks)
             if settled.is_near:
-                if mesh != meshes[-1] and settled.arrival > least * (1 + _FINER_IN_BENDS):
+                if settled.arrival > least * (1 + _FINER_IN_BENDS) and _has_grid(attempt, finer, settled):
                     break
                 profile = _fitting(replace(attempt, mesh=mesh), most, settled)
                 if profile is not None:
@@ -185,6 +186,11 @@ def _round_bends(
             return None
     fits = (_fitting(replace(attempt, mesh=mesh), most, settled) for mesh in reversed(meshes))
     return next((profile for profile in fits if profile is not None), None)
+
+
+def _has_grid(attempt: _Attempt, mesh: float | None, settled: Settled) -> bool:
+    """Whether there is a mesh, and its grid is not too large."""
+    return mesh is not None and _grid(replace(attempt, mesh=mesh), settled.arrival, settled.passes.tolist()) is not None
 
 
 def _fitting(attempt: _Attempt, most: float, settled: Settled) -> VelocityProfile | None:
