@@ -74,3 +74,17 @@ def test_the_root_of_an_increasing_cubic_is_found(c1, c2, c3, h, share):
     assert 0 <= root <= h
     scale = h * (c1 + h * (c2 + h * c3))
     assert abs(c0 + root * (c1 + root * (c2 + root * c3))) <= 1e-13 * (scale + 1)
+
+
+@pytest.mark.parametrize("power", range(-15, 0))
+def test_near_a_stop_the_time_is_the_cube_root_of_what_is_left(power):
+    """With the jerk alone: a way d before the end lasts the cube root of 6 d / j, to nine digits however short it is."""
+    jerk, h = 1.5, 2.0
+    way = jerk * h**3 / 6 * 10.0**power
+    # (h - u)^3 j / 6 = d as a cubic in u, and the same from the other end
+    coming = np.array([[way - jerk * h**3 / 6], [jerk * h**2 / 2], [-jerk * h / 2], [jerk / 6]])
+    going = np.array([[-way], [0.0], [0.0], [jerk / 6]])
+    expected = h * 10.0 ** (power / 3)
+    assert increasing_root(going, np.array([h]))[0] == pytest.approx(expected, rel=1e-9)
+    if power > -9:  # the constant term itself is rounded
+        assert h - increasing_root(coming, np.array([h]))[0] == pytest.approx(expected, rel=1e-5)

@@ -113,3 +113,12 @@ def test_advancing_twice_is_advancing_once(state, jerk, first, second):
     start, j = np.array([state]), np.array([jerk])
     twice = advance(advance(start, j, np.array([first])), j, np.array([second]))
     assert twice == pytest.approx(advance(start, j, np.array([first + second])), abs=1e-11)
+
+
+@settings(deadline=None, derandomize=True, max_examples=50)
+@given(phases, st.lists(st.floats(-5, 60), min_size=1, max_size=20))
+def test_one_place_is_what_the_states_say_to_the_last_digit(phases, times):
+    """At any time, before the departure and behind the arrival as well."""
+    profile = profile_of(phases, departure=1.0)
+    asked = [*times, *profile.times.tolist()]
+    assert [profile.place(t) for t in asked] == profile.state(asked)[:, 0].tolist()

@@ -14,7 +14,7 @@ from coord.alone.speed_limit import SpeedLimit, speed_limit
 from coord.model.footprint import Footprint
 from coord.model.path import Path, straight
 from coord.model.robot import Limits, Robot
-from coord.timing.bends import passages
+from coord.timing.bends import narrower, passages
 from coord.timing.ego import earliest, ego, sharpened, still_needed
 
 
@@ -217,3 +217,17 @@ def test_leaving_a_sharp_bend_costs_more_than_without_jerk():
     """From 1 m before a bend at 0.25 m/s to 1 m behind it: on most ways some tenths of a second more."""
     extra = [one.bends.between.max() for _, one in map(scene, range(16)) if one.bends is not None]
     assert np.median(extra) > 0.1
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_narrower_cells_go_on_from_those_that_are_known(seed):
+    """Twice one round is two rounds, and no bound falls by it."""
+    _, one = scene(seed)
+    if one.bends is None:
+        return
+    once = narrower(one.bends, one.relaxed, 1)
+    twice, both = narrower(once, one.relaxed, 1), narrower(one.bends, one.relaxed, 2)
+    for name in ("late", "long", "early", "still", "between"):
+        assert np.array_equal(getattr(twice, name), getattr(both, name))
+        assert np.all(getattr(both, name) >= getattr(one.bends, name) - 1e-9)
+    assert one.bends.total - 1e-9 <= once.total <= both.total + 1e-9

@@ -12,9 +12,10 @@ from coord.model.path import Path
 from coord.model.robot import Limits, Robot
 from coord.timing.clear import excess
 from coord.timing.ego import ego
-from coord.timing.grid import Course, border_times, cells_in
+from coord.timing.grid import Course, border_times, cells_in, time_knots
+from coord.timing.haste import hasty_course
 from coord.timing.program import course_of, smooth_through, through_tube
-from coord.timing.tube import Tube, after_bound, before_bound
+from coord.timing.tube import Tube, after_bound, before_bound, off_chords
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.3)
 
@@ -87,3 +88,39 @@ def test_with_a_little_more_time_a_bend_is_driven_more_smoothly(squared_jerk):
 def test_without_a_course_there_is_no_program_for_a_path_with_bends():
     """Where it is unknown which cells are in the bend, none is promised."""
     assert through_tube(robot(), Tube([], []), 10.0, 80.0) is None
+
+
+def steep(one, where, ahead, rises=0.15):
+    """A window that the quickest motion passes before by a little, and that takes 0.4 m more within a moment."""
+    since = float(np.interp(where, one.alone.states[:, 0], one.alone.times))
+    times = since + np.append(np.linspace(0.0, rises, 31), 2.0)
+    fallen = 0.4 * (1 - np.sqrt(np.minimum((times - since) / rises, 1.0)))
+    s = one.alone.state(times)[:, 0] - ahead - fallen
+    high = np.stack([s[:-1], s[1:]], axis=1)
+    high[-1] = s[-2]
+    return Window(0, times, high - 1.0, high)
+
+
+@pytest.mark.parametrize("where", [4.0, 7.0, 11.0, 12.0, 14.0])
+def test_a_window_that_grows_within_a_moment_does_not_shut_out_who_is_two_centimetres_ahead(where):
+    """Before and behind a bend the program's motion takes less than 0.5 % more than the quickest, which passes."""
+    one = robot()
+    window = steep(one, where, 0.02)
+    tube = Tube([], [before_bound(window)])
+    assert not excess(one.alone, window).passes_after
+    assert excess(one.alone, window).is_clear
+    profile = through_tube(one, tube, one.solo_bound, 80.0, hasty_course(one, tube))
+    assert profile is not None
+    assert profile.arrival <= 1.005 * one.alone.arrival
+    assert excess(profile, window).is_clear
+
+
+@pytest.mark.parametrize("mesh", [1.0, 0.4, 0.16])
+def test_cells_are_short_where_bounds_are_bent(mesh):
+    """Where a cell is longer than 10 ms, the tube loses no more there than a centimetre times the mesh."""
+    one = robot()
+    tube = Tube([after_bound(block(20.0, 25.0, 14.0, 15.0))], [before_bound(steep(one, 12.0, 0.02))])
+    times = time_knots(tube, 0.0, 40.0, LIMITS, mesh)
+    off = off_chords(tube, times)
+    assert off[np.diff(times) > 0.01].max() <= 0.01 * mesh
+    assert off_chords(tube, np.array([0.0, 20.0, 25.0, 40.0])).max() > 0.01

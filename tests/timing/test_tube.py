@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from coord.conflicts.window import Window
 from coord.model.robot import Limits
 from coord.solvers.jerk import rest_to_rest
 from coord.timing.clear import excess
-from coord.timing.tube import after_bound, before_bound, lower_on_cells, upper_on_cells
+from coord.timing.tube import Tube, after_bound, before_bound, lower_on_cells, off_chords, upper_on_cells
 
 
 def random_window(rng):
@@ -111,3 +112,16 @@ def test_the_margin_is_taken_from_both_sides():
         plain, inset = on_cells(bound, times, 0.0), on_cells(bound, times, 0.01)
         finite = np.isfinite(plain)
         assert np.allclose(sign * (plain[finite] - inset[finite]), 0.01, atol=1e-12)
+
+
+def test_a_bound_is_off_its_chord_by_the_height_of_its_kink():
+    """Flat for 1 s, then 2 m in 1 s: in a cell of both the middle is 1 m below the chord, in cells of one piece none."""
+    values = np.array([[1.0, 1.0], [1.0, 3.0]])
+    after, before = (
+        Window(0, np.array([5.0, 6.0, 7.0]), values, values + 1),
+        Window(0, np.array([5.0, 6.0, 7.0]), -values[::-1], 4 - values[::-1, ::-1]),
+    )
+    upper, lower = Tube([after_bound(after)], []), Tube([], [before_bound(before)])
+    for tube in (upper, lower):
+        assert off_chords(tube, np.array([0.0, 5.0, 7.0, 9.0])) == pytest.approx([0.0, 1.0, 0.0])
+        assert off_chords(tube, np.array([0.0, 5.0, 6.0, 7.0, 9.0])) == pytest.approx([0.0] * 4)
