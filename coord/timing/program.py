@@ -8,9 +8,8 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -164,33 +163,30 @@ def _round_bends(
     ego: Ego, tube: Tube, least: float, most: float, course: Course, *, fine: bool
 ) -> VelocityProfile | None:
     """The quickest profile that rounds about a course lead to: finer ones only where they may gain something."""
-    attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), 0.0, fine)
-    settled = first_guess(ego, course, attempt.departure, most)
+    limits, departure = tightened(ego.robot.limits), held_until(ego, tube)
     meshes = (*_MESHES_OF_BENDS, _FINER_MESH_OF_BENDS) if fine else _MESHES_OF_BENDS
-    lacked = np.inf
-    for mesh, finer in itertools.pairwise((*meshes, None)):
+    attempts = [_Attempt(ego, tube, limits, departure, mesh, fine) for mesh in meshes]
+    settled, lacked = first_guess(ego, course, departure, most), np.inf
+    for attempt, finer in zip(attempts, (*attempts[1:], None), strict=True):
+        mesh = attempt.mesh
         if mesh == _FINER_MESH_OF_BENDS and settled.lacks > _LESS * lacked:
             break
-        lacked, is_first, least_lacking = settled.lacks, mesh == meshes[0], settled
-        for found in rounds(ego, tube, attempt.limits, mesh, most, settled, is_first=is_first, many=fine):
+        lacked, is_first, least_lacking = settled.lacks, attempt is attempts[0], settled
+        for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first, many=fine):
             settled, least_lacking = found, min(least_lacking, found, key=lambda one: one.lacks)
             if settled.is_near:
-                if settled.arrival > least * (1 + _FINER_IN_BENDS) and _has_grid(attempt, finer, settled):
+                may_gain = settled.arrival > least * (1 + _FINER_IN_BENDS)
+                if may_gain and finer is not None and _grid_of(finer, settled) is not None:
                     break
-                profile = _fitting(replace(attempt, mesh=mesh), most, settled)
+                profile = _fitting(attempt, most, settled)
                 if profile is not None:
                     return profile
         if settled.lacks > LACK:  # rounds may lead away again
             settled = least_lacking
         if is_hopeless(settled, mesh):
             return None
-    fits = (_fitting(replace(attempt, mesh=mesh), most, settled) for mesh in reversed(meshes))
+    fits = (_fitting(attempt, most, settled) for attempt in reversed(attempts))
     return next((profile for profile in fits if profile is not None), None)
-
-
-def _has_grid(attempt: _Attempt, mesh: float | None, settled: Settled) -> bool:
-    """Whether there is a mesh, and its grid is not too large."""
-    return mesh is not None and _grid(replace(attempt, mesh=mesh), settled.arrival, settled.passes.tolist()) is not None
 
 
 def _fitting(attempt: _Attempt, most: float, settled: Settled) -> VelocityProfile | None:
@@ -198,8 +194,7 @@ def _fitting(attempt: _Attempt, most: float, settled: Settled) -> VelocityProfil
     ego = attempt.ego
     for pause in _PAUSES:
         arrival = min(settled.arrival + pause, most)
-        passes = settled.passes.tolist()
-        times = _grid(attempt, arrival, passes)
+        times = _grid_of(attempt, settled, arrival)
         if times is None:
             return None
         profile = _profile(attempt, cells_between(attempt.tube, times, ego.length, ego.caps, settled.passes))
@@ -239,6 +234,11 @@ def _knots(attempt: _Attempt, arrival: float, course: Course | None) -> Array | 
     else:
         further = border_times(attempt.ego.caps, course.within(attempt.departure, arrival))
     return _grid(attempt, arrival, further)
+
+
+def _grid_of(attempt: _Attempt, settled: Settled, arrival: float | None = None) -> Array | None:
+    """The grid on which the borders are passed as in the rounds; None where it would be too large."""
+    return _grid(attempt, settled.arrival if arrival is None else arrival, settled.passes.tolist())
 
 
 def _grid(attempt: _Attempt, arrival: float, further: Sequence[float]) -> Array | None:
