@@ -88,12 +88,12 @@ class Course:
 
 def time_knots(
     tube: Tube, departure: float, arrival: float, limits: Limits, mesh: float, further: Sequence[float] = (), *,
-    many: bool = False,
+    many: bool = False, cut: bool = True,
 ) -> Array | None:  # fmt: skip
     """Knots at the tube's events and ``further`` ones [s], dense behind and before each, as many as a program has.
 
     None where that would be more than the largest program has, or where there is no time at all. ``mesh`` scales all
-    cells; ``many``: there may be thousands.
+    cells; ``many``: there may be thousands; ``cut``: whether cells are cut where bounds are bent.
     """
     if arrival - departure < _SAME_TIME:
         return None
@@ -111,7 +111,7 @@ def time_knots(
         longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
     sizes = LARGE_SIZES if many else SIZES
-    times = _bent_ones_cut(tube, times, _BENT * mesh, sizes[-1])
+    times = _bent_ones_cut(tube, times, _BENT * mesh, sizes[-1]) if cut else times
     size = next((size for size in sizes if size >= len(times) - 1), None)
     if size is None:
         return None

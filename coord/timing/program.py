@@ -242,8 +242,9 @@ def _grid_of(attempt: _Attempt, settled: Settled, arrival: float | None = None) 
 
 
 def _grid(attempt: _Attempt, arrival: float, further: Sequence[float]) -> Array | None:
-    limits, mesh = attempt.limits, attempt.mesh
-    return time_knots(attempt.tube, attempt.departure, arrival, limits, mesh, further, many=attempt.many)
+    # without bends finer meshes, which cost little there, do as well
+    limits, mesh, cut = attempt.limits, attempt.mesh, attempt.many or not attempt.ego.caps.is_constant
+    return time_knots(attempt.tube, attempt.departure, arrival, limits, mesh, further, many=attempt.many, cut=cut)
 
 
 def course_of(profile: VelocityProfile, since: float) -> Course:
