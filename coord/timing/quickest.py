@@ -40,17 +40,16 @@ class Ramps:
     top: float
     dips: Array
 
-    def way(self, times: Array, row: Rows | None = None) -> Array:
-        """Ways [m] after times [s], (n, m) or, of the ramps ``row``, (m,)."""
+    def way(self, times: Array, row: Rows) -> Array:
+        """Ways [m] after times [s] of the ramps ``row``, or whatever these arrays make together."""
         return self._at(times, row)[0]
 
-    def speed(self, times: Array, row: Rows | None = None) -> Array:
+    def speed(self, times: Array, row: Rows) -> Array:
         """Speeds [m/s] after times [s], likewise."""
         return self._at(times, row)[1]
 
-    def time(self, ways: Array, row: Rows | None = None) -> Array:
-        """Times [s] before which no ramp has gone some ways [m], likewise; short by rounding at most."""
-        row = self._rows(row)
+    def time(self, ways: Array, row: Rows) -> Array:
+        """Times [s] before which the ramps have not gone some ways [m], likewise; short by rounding at most."""
         phase = np.maximum((self.states[row, :, 0] <= ways[..., None]).sum(axis=-1) - 1, 0)
         row = np.broadcast_to(row, ways.shape)
         (s, v, a), begin = np.moveaxis(self.states[row, phase], -1, 0), self.knots[row, phase]
@@ -63,16 +62,12 @@ class Ramps:
             times[bent] = begin[bent] + increasing_root(cubic, self.knots[k, p + 1] - begin[bent])
         return np.asarray(times)
 
-    def _at(self, times: Array, row: Rows | None) -> tuple[Array, Array]:
-        row = self._rows(row)
+    def _at(self, times: Array, row: Rows) -> tuple[Array, Array]:
         phase = (self.knots[row, 1:] <= times[..., None]).sum(axis=-1)
         s, v, a = np.moveaxis(self.states[row, phase], -1, 0)
         h = times - self.knots[row, phase]
         j = np.append(self.jerks, 0.0)[phase]
         return np.asarray(s + h * (v + h * (a / 2 + h * j / 6))), np.asarray(v + h * (a + h * j / 2))
-
-    def _rows(self, row: Rows | None) -> Rows:
-        return np.arange(len(self.knots))[:, None] if row is None else row
 
 
 def ramps(speeds: Array, accelerations: Array, top: float, most: Array | float, jerk: float) -> Ramps:
