@@ -56,7 +56,7 @@ class _Driver:
 
     def place(self, t: float) -> float:
         if self.leg is not None:
-            return float(self.leg.state(t)[0, 0])
+            return self.leg.place(t)
         return 0.0 if self.way is None else self.way.length
 
 

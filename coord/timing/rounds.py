@@ -126,7 +126,8 @@ def rounds(
             guess, trust, used, is_strict = before, _BACK * used, 0.0, True
             continue
         gain = guess.arrival - float(motion.times[-1])
-        is_near = count > is_first and max(lacks, guess.lacks) < LACK and abs(gain) < _NEAR * guess.arrival
+        has_moved = count > (1 if is_first else 0)  # the very first round seeks a motion with all knots where they are
+        is_near = has_moved and max(lacks, guess.lacks) < LACK and abs(gain) < _NEAR * guess.arrival
         is_far = 0 < trust <= 1.001 * np.abs((motion.times - times)[[*at, -1]]).max()
         is_better = lacks < _RATHER * guess.lacks or (lacks < LACK and gain > _NEAR * guess.arrival)
         stuck = stuck + 1 if lacks > max(LACK, _LESS * guess.lacks) and not (is_far and is_better) else 0

@@ -223,8 +223,7 @@ def test_leaving_a_sharp_bend_costs_more_than_without_jerk():
 def test_narrower_cells_go_on_from_those_that_are_known(seed):
     """Twice one round is two rounds, and no bound falls by it."""
     _, one = scene(seed)
-    if one.bends is None:
-        return
+    assert one.bends is not None
     once = narrower(one.bends, one.relaxed, 1)
     twice, both = narrower(once, one.relaxed, 1), narrower(one.bends, one.relaxed, 2)
     for name in ("late", "long", "early", "still", "between"):
