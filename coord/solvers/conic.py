@@ -16,10 +16,6 @@ from coord.model.arrays import Array
 Box: TypeAlias = tuple[Array, Array]
 
 
-#: Tolerances of PIQP where a solution is only a step on the way to the next.
-_COARSE = {"eps_abs": 1e-6, "eps_rel": 1e-7, "eps_duality_gap_abs": 1e-6, "eps_duality_gap_rel": 1e-6}
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Program:
     """A solver for one number of cells; it is used again and again with other numbers.
@@ -60,9 +56,8 @@ class Program:
 
 
 def program(
-    name: str, places: Sequence[tuple[int, int]], cells: int, *, rows: int, unknowns: int, more: int, rounds: int,
-    exact: bool = True,
-) -> Program:  # fmt: skip
+    name: str, places: Sequence[tuple[int, int]], cells: int, *, rows: int, unknowns: int, more: int, rounds: int
+) -> Program:
     """A program with the same coefficients in every cell.
 
     Parameters
@@ -71,7 +66,6 @@ def program(
         unknown of all.
     rows, unknowns : of a cell; ``more`` : unknowns after those of the last cell.
     rounds : iterations at most.
-    exact : whether the solver's own tolerances are to be met; else coarser ones do, which takes a sixth less time.
     """
     place, k, count = np.array(places), np.arange(cells)[:, None], unknowns * cells + more
     at = (rows * k + place[:, 0]).ravel()
@@ -80,11 +74,10 @@ def program(
     starts = np.searchsorted(columns[order], np.arange(count + 1))
     pattern = casadi.Sparsity(rows * cells, count, starts.tolist(), at[order].tolist())
     diagonal = casadi.Sparsity.diag(count)
-    tolerances = {} if exact else _COARSE
     options: dict[str, Any] = {
         "error_on_fail": False,
         "print_time": False,
-        "piqp": {"max_iter": rounds, "verbose": False, **tolerances},
+        "piqp": {"max_iter": rounds, "verbose": False},
     }
     solver = casadi.conic(name, "piqp", {"h": diagonal, "a": pattern}, options)
     return Program(at, columns, order, pattern, diagonal, solver)

@@ -8,44 +8,24 @@ a little longer is that motion's own speed, acceleration and jerk at the cell's 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from coord.model.arrays import Array
 from coord.model.robot import Limits
-from coord.solvers.conic import Program, program
-from coord.solvers.linear import CREEP, Cells
+from coord.solvers.assembly import COARSE, Assembly, Columns, Term
+from coord.solvers.knots import Cells, Further, Knots, add_motion, add_smoothness, bounded, knots
 
 #: [s/m] A metre that lacks at a lower bound costs as much as arriving so many seconds later.
 _PENALTY = 20.0
 
-#: PIQP needs a little curvature everywhere; of several solutions one with little jerk and evenly stretched cells is
-#: taken: weights [s] of the squared jerk, as a share of its limit, and of the squared stretching.
-_DIAGONAL, _SMOOTH, _EVEN, _STAY = 1e-7, 1e-5, 1e-4, 2e-4
+#: Of several solutions one with little jerk and evenly stretched cells is taken: weights [s] of the squared jerk, as a
+#: share of its limit, and of the squared stretching, and [1/s] of the squared shift of each knot.
+_SMOOTH, _EVEN, _STAY = 1e-5, 1e-4, 2e-4
 
 #: [1] Cells may shrink and grow by these shares in one round.
 _SHRINK, _GROW = 0.6, 1.5
-
-#: [1] Wider than any difference of two stretchings.
-_ANY = 5.0
-
-#: Row and column of each coefficient of a cell. Columns: 0..5 are s, v, a, j, the shift of the knot and the stretching
-#: of the cell, 6.. the same of the next cell, and -1 is what lacks. Rows: three equations of motion; the next knot's
-#: shift; the next stretching; upper and lower bound at the next knot; middle speed; upper and lower bound at both
-#: inner Bezier points.
-_PLACES = (
-    (0, 6), (0, 0), (0, 1), (0, 2), (0, 3), (0, 5),
-    (1, 7), (1, 1), (1, 2), (1, 3), (1, 5),
-    (2, 8), (2, 2), (2, 3), (2, 5),
-    (3, 10), (3, 4), (3, 5), (4, 11), (4, 5),
-    (5, 6), (5, 10), (6, 6), (6, 10), (6, -1),
-    (7, 1), (7, 2), (7, 5),
-    (8, 0), (8, 1), (8, 4), (8, 5), (9, 0), (9, 1), (9, 4), (9, 5), (9, -1),
-    (10, 0), (10, 1), (10, 2), (10, 4), (10, 5), (11, 0), (11, 1), (11, 2), (11, 4), (11, 5), (11, -1),
-)  # fmt: skip
-_ROWS = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,95 +77,95 @@ def moved(cells: Cells, limits: Limits, length: float, about: Motion, freedom: F
     lacks, at a price, so that there always is a motion. It is exact as far as the knots stay where they are. None
     where the solver returns no numbers.
     """
-    n = len(cells.h)
-    box, row_box = _variable_bounds(cells, limits, length, freedom), _row_bounds(cells, length, freedom)
-    gradient, weight = np.zeros(6 * n + 7), np.full(6 * n + 7, _DIAGONAL)
-    gradient[[-3, -1]] = 1.0, _PENALTY
-    weight[3:-7:6] = _SMOOTH * cells.h / limits.jerk**2
-    weight[5:-7:6] = _EVEN * cells.h
-    weight[4:-7:6] = _STAY
-    x, _ = _program(n).solve(weight, gradient, _coefficients(cells, about), row_box, box)
+    at = knots(len(cells.h))
+    shifts = _Shifts(about.times, freedom, at.count)
+    lacking = at.count + shifts.count
+    program = Assembly(lacking + 1)
+    add_motion(program, at, cells, limits, _stretched(cells, about, shifts))
+    _add_bounds(program, at, cells, length, about, shifts, lacking)
+    shifts.add_to(program, freedom)
+    program.box(at.s[-1:], -np.inf, length)
+    add_smoothness(program, at, cells.h, _SMOOTH / limits.jerk**2)
+    program.box(np.array([lacking]), 0.0, length + 1.0)
+    program.cost[lacking] = _PENALTY
+    x, _ = program.solve(COARSE)
     if not np.all(np.isfinite(x)):
         return None
-    z = x[:-1].reshape(n + 1, 6)
-    return Motion(about.times + z[:, 4], z[:, :3].copy(), z[:-1, 3].copy()), float(x[-1])
+    shift, states = shifts.at_knots(x), at.states(x)
+    jerks = (np.diff(states[:, 2]) - about.jerks * np.diff(shift)) / cells.h
+    return Motion(about.times + shift, states, jerks), float(x[-1])
 
 
-def _variable_bounds(cells: Cells, limits: Limits, length: float, freedom: Freedom) -> tuple[Array, Array]:
-    """Unknowns s, v, a, j, shift and stretching for each cell and at the end, then what lacks."""
-    low, high = np.zeros((len(cells.h) + 1, 6)), np.zeros((len(cells.h) + 1, 6))
-    low[:, 0], high[:, 0] = -1.0, length
-    low[:, 1], high[:, 1] = CREEP, limits.speed
-    np.minimum(high[:-1, 1], cells.caps, out=high[:-1, 1])
-    np.minimum(high[1:, 1], cells.caps, out=high[1:, 1])
-    low[:, 2], high[:, 2] = -limits.deceleration, limits.acceleration
-    low[:, 3], high[:, 3] = -limits.jerk, limits.jerk
-    low[:, 4] = np.where(freedom.fixed, 0.0, -freedom.most)
-    high[:, 4] = -low[:, 4]
-    low[:, 5], high[:, 5] = -_SHRINK, _GROW
-    low[0, :3] = high[0, :3] = low[0, 4] = high[0, 4] = 0.0
-    low[-1, 1:] = high[-1, 1:] = 0.0
-    low[-1, 4], high[-1, 4] = -freedom.sooner, freedom.later
-    return np.append(low.ravel(), 0.0), np.append(high.ravel(), length + 1.0)
+class _Shifts:
+    """The unknown shifts of the anchors that may move; the knots between two anchors are shifted evenly."""
+
+    def __init__(self, times: Array, freedom: Freedom, first: int) -> None:
+        anchors = np.flatnonzero(freedom.anchors)
+        moves = ~freedom.fixed[anchors]
+        self.count = int(np.count_nonzero(moves))
+        self.columns = np.where(moves, first + np.cumsum(moves) - 1, -1)
+        self.spans = np.diff(times[anchors])
+        self.span = np.searchsorted(anchors[1:-1], np.arange(len(times)), side="right")
+        self.share = (times - times[anchors[self.span]]) / self.spans[self.span]
+
+    def of_knots(self, k: Columns, factor: Array) -> list[Term]:
+        """Terms of the shifts of knots k (m,), times a factor (m,)."""
+        span, share = self.span[k], self.share[k]
+        return [(self.columns[span], factor * (1 - share)), (self.columns[span + 1], factor * share)]
+
+    def of_cells(self, k: Columns, factor: Array) -> list[Term]:
+        """Terms of the shares by which cells k (m,) are stretched, times a factor (m,)."""
+        span = self.span[k]
+        rate = factor / self.spans[span]
+        return [(self.columns[span + 1], rate), (self.columns[span], -rate)]
+
+    def add_to(self, program: Assembly, freedom: Freedom) -> None:
+        """How far anchors move, how much cells shrink and grow, and what that costs."""
+        program.box(self.columns[:-1], -freedom.most, freedom.most)
+        program.box(self.columns[-1:], -freedom.sooner, freedom.later)
+        program.cost[self.columns[-1]] = 1.0
+        changes = np.maximum(self.columns[:-1], self.columns[1:]) >= 0
+        before, after, spans = self.columns[:-1][changes], self.columns[1:][changes], self.spans[changes]
+        stretching: list[Term] = [(after, 1 / spans), (before, -1 / spans)]
+        program.rows(np.full(len(spans), -_SHRINK), np.full(len(spans), _GROW), *stretching)
+        program.squares(_EVEN * spans, *stretching)
+        k = np.arange(len(self.span))
+        program.squares(np.full(len(k), _STAY), *self.of_knots(k, np.ones(len(k))))
+
+    def at_knots(self, x: Array) -> Array:
+        """The shifts (N+1,) [s] in a solution."""
+        anchors = np.where(self.columns >= 0, x[self.columns], 0.0)
+        before, after = anchors[self.span], anchors[self.span + 1]
+        return np.asarray(before + self.share * (after - before))
 
 
-def _row_bounds(cells: Cells, length: float, freedom: Freedom) -> tuple[Array, Array]:
-    """Bounds of the rows; those without a bound get what is beyond all motions: rows without any make PIQP print."""
-    n, far = len(cells.h), 2 * length + 4
-    low, high = np.zeros((n, _ROWS)), np.zeros((n, _ROWS))
-    changes = np.append(freedom.anchors[1:-1], True)
-    low[changes, 4], high[changes, 4] = -_ANY, _ANY
-    (upper, _), (lower, _) = _at_knots(cells, length)
-    low[:, [5, 8, 10]], high[:, [6, 9, 11]] = -far, 2 * far
-    high[:, 5], low[:, 6] = np.minimum(upper, far), np.maximum(lower, -far)
-    high[:, [8, 10]], low[:, [9, 11]] = np.minimum(cells.upper[:, 1:3], far), np.maximum(cells.lower[:, 1:3], -far)
-    low[:, 7], high[:, 7] = CREEP, cells.caps
-    low[[0, -1], 7] = -CREEP  # at rest at both ends
-    return low.ravel(), high.ravel()
+def _stretched(cells: Cells, about: Motion, shifts: _Shifts) -> Further:
+    """What stretching a cell adds to the rows of its motion."""
+    h, j, k = cells.h, about.jerks, np.arange(len(cells.h))
+    v, a = about.states[:, 1], about.states[:, 2]
+    factors = (h * (h * j / 2 - a[1:]), h * (h**2 * j / 6 - v[1:]), -h * j, h * a[:-1] / 2)
+    speed, place, jerk, middle = (shifts.of_cells(k, factor) for factor in factors)
+    return speed, place, jerk, middle
 
 
-def _at_knots(cells: Cells, length: float) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """Upper and lower bounds (N,) [m] at the knots but the first, the goal as well, and how quickly they rise."""
-    rises = _rises(cells)
-    following = np.append(cells.upper[1:, 0], np.inf), np.append(cells.lower[1:, 0], -np.inf)
-    own = cells.upper[:, 3], cells.lower[:, 3]
-    upper, lower = np.minimum(own[0], following[0]), np.maximum(own[1], following[1])
-    up = np.where(own[0] <= following[0], rises[0], np.append(rises[0][1:], 0.0))
-    down = np.where(own[1] >= following[1], rises[1], np.append(rises[1][1:], 0.0))
-    lower[-1], down[-1] = length, 0.0
-    return (upper, up), (lower, down)
-
-
-def _rises(cells: Cells) -> tuple[Array, Array]:
-    """How quickly (N,), (N,) [m/s] upper and lower bounds rise in each cell; 0 where there is none."""
-    found = []
-    for bound in (cells.upper, cells.lower):
-        finite = np.isfinite(bound).all(axis=1)
-        found.append(np.where(finite, (np.where(finite, bound[:, 3], 0.0) - np.where(finite, bound[:, 0], 0.0)), 0.0))
-    return found[0] / cells.h, found[1] / cells.h
-
-
-def _coefficients(cells: Cells, about: Motion) -> Array:
-    """Values of the rows' coefficients, cell by cell, in the order of ``_PLACES``."""
-    h, states = cells.h, about.states
-    one = np.ones_like(h)
-    up, down = _rises(cells)
-    (_, up_end), (_, down_end) = _at_knots(cells, 0.0)
-    first = h * states[:-1, 1] / 3
-    second = 2 * first + h**2 * states[:-1, 2] / 3
-    dynamics = [
-        one, -one, -h, -(h**2) / 2, -(h**3) / 6, -states[1:, 1] * h,
-        one, -one, -h, -(h**2) / 2, -states[1:, 2] * h,
-        one, -one, -h, -about.jerks * h,
-        one, -one, -h, one, -one,
-    ]  # fmt: skip
-    knots = [one, -up_end, one, -down_end, one, one, h / 2, h * states[:-1, 2] / 2]
-    inner = [one, h / 3, -up, first - up * h / 3, one, h / 3, -down, first - down * h / 3, one]
-    inner += [one, 2 * h / 3, h**2 / 6, -up, second - up * 2 * h / 3]
-    inner += [one, 2 * h / 3, h**2 / 6, -down, second - down * 2 * h / 3, one]
-    return np.stack(dynamics + knots + inner, axis=1).ravel()
-
-
-@lru_cache(maxsize=64)
-def _program(n: int) -> Program:
-    return program("movable", _PLACES, n, rows=_ROWS, unknowns=6, more=7, rounds=60, exact=False)
+def _add_bounds(
+    program: Assembly, at: Knots, cells: Cells, length: float, about: Motion, shifts: _Shifts, lacking: int
+) -> None:
+    """Rows for the bounds, which are met later where their knots move later; what lacks at lower ones is an unknown."""
+    v, a = about.states[:, 1], about.states[:, 2]
+    for one in bounded(at, cells, are_moving=True):
+        k, h = one.cells, cells.h[one.cells]
+        if one.point == 3:
+            terms = [*one.terms, *shifts.of_knots(k + 1, -one.rises)]
+        else:
+            share = one.point * h / 3
+            moves = share * v[k] + (h**2 * a[k] / 3 if one.point == 2 else 0.0) - share * one.rises
+            terms = [*one.terms, *shifts.of_knots(k, -one.rises), *shifts.of_cells(k, moves)]
+        none = np.full(len(k), np.inf)
+        if one.is_upper and one.point == 3 and not one.rises.any():
+            program.box(at.s[k + 1], -none, one.bounds)
+        elif one.is_upper:
+            program.rows(-none, one.bounds, *terms)
+        else:
+            program.rows(one.bounds, none, *terms, (np.full(len(k), lacking), 1.0))
+    program.rows(np.array([length]), np.array([np.inf]), (at.s[-1:], 1.0), (np.array([lacking]), 1.0))

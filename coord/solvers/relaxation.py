@@ -20,6 +20,9 @@ from coord.model.robot import Limits
 from coord.solvers import conic
 from coord.solvers.conic import Program
 
+#: Programs have one of these numbers of cells, so that few solvers are built.
+SIZES = (8, 12, 16, 24, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192, 256, 320, 384, 512)
+
 #: [1] A metre that lacks at a lower bound costs as much as so many metres that lack at the end.
 _PENALTY = 4.0
 

@@ -138,11 +138,12 @@ def branch_and_bound(search: Search) -> tuple[int, bool]:
             continue
         # on a path with bends a program's motion is the best of those about its course, not of all
         is_best = how != "program" or search.ego.caps.is_constant or profile.arrival * (1 - CLOSED) <= bound
-        undecided |= not is_best
         if not _can_beat(profile.arrival, search.best):
+            undecided |= not is_best
             continue
         violated = _first_violated(search, profile, chosen if how == _COURSE else {})
         if violated is None:
+            undecided |= not is_best
             search.take(profile, how)
             continue
         index = violated
@@ -210,7 +211,13 @@ def _relaxed(
         if not _can_beat(bound, search.best):
             return None, _BEATEN
     most = search.best.arrival * (1 - 10 * OPTIMAL)
-    program = through_tube(ego, tube, bound, most, near or course, fine=search.is_last) if bound < most else None
+    if bound >= most:
+        return None, ""
+
+    def runs_elsewhere(course: Course) -> bool:  # then it only tells where to branch
+        return _first_violated(search, course.profile, chosen) is not None
+
+    program = through_tube(ego, tube, bound, most, near or course, fine=search.is_last, is_enough=runs_elsewhere)
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"

@@ -18,7 +18,7 @@ from coord.alone.speed_limit import SpeedLimit
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
-from coord.solvers.linear import LARGE_SIZES, SIZES, Cells
+from coord.solvers.knots import Cells
 from coord.timing.tube import Tube, lower_on_cells, off_chords, upper_on_cells
 from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN, SAME_PLACE
 
@@ -35,6 +35,9 @@ _OF_STRETCH = 1 / 40
 #: [m] Cells on which a bound is off its chord by more than this, times the mesh, are cut, so often at most; but none
 #: that is shorter [s]: the solver fails where cells differ too much.
 _BENT, _CUTS, _UNCUT = 0.01, 6, 5e-3
+
+#: Cells of a grid.
+_FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 512, 2048
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6
@@ -90,9 +93,9 @@ def time_knots(
     tube: Tube, departure: float, arrival: float, limits: Limits, mesh: float, further: Sequence[float] = (), *,
     many: bool = False, cut: bool = True,
 ) -> Array | None:  # fmt: skip
-    """Knots at the tube's events and ``further`` ones [s], dense behind and before each, as many as a program has.
+    """Knots at the tube's events and ``further`` ones [s], dense behind and before each.
 
-    None where that would be more than the largest program has, or where there is no time at all. ``mesh`` scales all
+    None where these would be more than a program may have, or where there is no time at all. ``mesh`` scales all
     cells; ``many``: there may be thousands; ``cut``: whether cells are cut where bounds are bent.
     """
     if arrival - departure < _SAME_TIME:
@@ -110,12 +113,11 @@ def time_knots(
         is_taken = any(a < middle < b for a, b in spans)
         longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
-    sizes = LARGE_SIZES if many else SIZES
-    times = _bent_ones_cut(tube, times, _BENT * mesh, sizes[-1]) if cut else times
-    size = next((size for size in sizes if size >= len(times) - 1), None)
-    if size is None:
+    most = _MOST_CELLS_OF_MANY if many else _MOST_CELLS
+    times = _bent_ones_cut(tube, times, _BENT * mesh, most) if cut else times
+    if len(times) - 1 > most:
         return None
-    while len(times) - 1 < size:
+    while len(times) - 1 < _FEWEST_CELLS:
         k = int(np.argmax(np.diff(times)))
         times.insert(k + 1, (times[k] + times[k + 1]) / 2)
     times[-1] = arrival

@@ -16,8 +16,7 @@ import numpy as np
 
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
-from coord.solvers.linear import SIZES
-from coord.solvers.relaxation import Stages, farthest_bound
+from coord.solvers.relaxation import SIZES, Stages, farthest_bound
 from coord.timing.clock import clock
 from coord.timing.ego import Ego
 from coord.timing.grid import Course

@@ -8,7 +8,7 @@ not too late, and the search rises to the least possible one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,8 @@ from coord.alone.check import keeps_limits
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
 from coord.model.robot import Limits
-from coord.solvers.linear import Cells, farthest, smoothest
+from coord.solvers.knots import Cells
+from coord.solvers.linear import farthest, smoothest
 from coord.timing.ego import Ego
 from coord.timing.grid import Course, border_times, cells_between, cells_in, time_knots
 from coord.timing.polish import land_exactly
@@ -42,10 +43,10 @@ _MOST_STEPS = 12
 _AT_START = 2e-3
 
 #: On paths with bends, and how much longer than in the rounds a motion may take to fit exactly [s].
-_MESHES_OF_BENDS, _PAUSES = (1.0, 0.4, 0.16), (0.0, 2e-3)
+_MESHES_OF_BENDS, _PAUSES = (0.8, 0.33, 0.13), (1e-3, 8e-3)
 
 #: What follows where nothing else decides, as long as a finer mesh brings what lacks below this share.
-_FINER_MESH_OF_BENDS, _LESS = 0.07, 0.75
+_FINER_MESH_OF_BENDS, _LESS = 0.055, 0.75
 
 #: Samples of a profile for its course.
 _SAMPLES = 400
@@ -55,8 +56,9 @@ _CORRECTIONS = 2
 
 
 def through_tube(
-    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, fine: bool = False
-) -> VelocityProfile | None:
+    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, fine: bool = False,
+    is_enough: Callable[[Course], bool] = lambda course: False,
+) -> VelocityProfile | None:  # fmt: skip
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
 
     ``least`` must not be later than the best arrival there is. The profile keeps the limits (checked
@@ -67,9 +69,10 @@ def through_tube(
     ----------
     course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
     fine : whether a narrow tube is worth the finest grids.
+    is_enough : whether finer grids are of no use for a motion about such a course, on a path with bends.
     """
     if not ego.caps.is_constant:
-        return None if course is None else _round_bends(ego, tube, least, most, course, fine=fine)
+        return None if course is None else _round_bends(ego, tube, least, most, course, fine=fine, is_enough=is_enough)
     best = None
     for mesh in (*_MESHES, *_FINER_MESHES) if fine else _MESHES:
         many = mesh in _FINER_MESHES
@@ -160,7 +163,7 @@ def _reach(attempt: _Attempt, arrival: float) -> float:
 
 
 def _round_bends(
-    ego: Ego, tube: Tube, least: float, most: float, course: Course, *, fine: bool
+    ego: Ego, tube: Tube, least: float, most: float, course: Course, *, fine: bool, is_enough: Callable[[Course], bool]
 ) -> VelocityProfile | None:
     """The quickest profile that rounds about a course lead to: finer ones only where they may gain something."""
     limits, departure = tightened(ego.robot.limits), held_until(ego, tube)
@@ -175,7 +178,7 @@ def _round_bends(
         for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first, many=fine):
             settled, least_lacking = found, min(least_lacking, found, key=lambda one: one.lacks)
             if settled.is_near:
-                may_gain = settled.arrival > least * (1 + _FINER_IN_BENDS)
+                may_gain = settled.arrival > least * (1 + _FINER_IN_BENDS) and not is_enough(settled.course)
                 if may_gain and finer is not None and _grid_of(finer, settled) is not None:
                     break
                 profile = _fitting(attempt, most, settled)
@@ -185,6 +188,8 @@ def _round_bends(
             settled = least_lacking
         if is_hopeless(settled, mesh):
             return None
+    if settled.lacks > LACK:
+        return None
     fits = (_fitting(attempt, most, settled) for attempt in reversed(attempts))
     return next((profile for profile in fits if profile is not None), None)
 

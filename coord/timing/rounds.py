@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from coord.model.arrays import Array
 from coord.model.robot import Limits
-from coord.solvers.linear import Cells
+from coord.solvers.knots import Cells
 from coord.solvers.movable import Freedom, Motion, moved
 from coord.timing.ego import Ego
 from coord.timing.grid import Course, cells_between, course_through, time_knots
@@ -52,10 +52,10 @@ _APART = 0.02
 _NARROWED, _NARROWER = 2e-4, 3.0
 
 #: [m] Less than this lacks where a motion is found; and where more lacks, times the mesh, finer meshes do not help.
-LACK, _MUCH = 1e-5, 0.05
+LACK, _MUCH = 1e-5, 0.065
 
 #: Rounds end when so many of them have not brought what lacks below this share of what lacked before.
-_TRIES, _LESS = 3, 0.8
+_TRIES, _LESS = 2, 0.8
 
 #: [1] Rounds end when the arrival changes by less than this share.
 _NEAR = 5e-4
@@ -126,7 +126,7 @@ def rounds(
             guess, trust, used, is_strict = before, _BACK * used, 0.0, True
             continue
         gain = guess.arrival - float(motion.times[-1])
-        has_moved = count > (1 if is_first else 0)  # the very first round seeks a motion with all knots where they are
+        has_moved = count > 1 or not is_first  # the very first round seeks a motion with all knots where they are
         is_near = has_moved and max(lacks, guess.lacks) < LACK and abs(gain) < _NEAR * guess.arrival
         is_far = 0 < trust <= 1.001 * np.abs((motion.times - times)[[*at, -1]]).max()
         is_better = lacks < _RATHER * guess.lacks or (lacks < LACK and gain > _NEAR * guess.arrival)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coord.solvers.linear import SIZES
+from coord.solvers.relaxation import SIZES
 from coord.timing import outer
 
 

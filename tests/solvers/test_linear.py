@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coord.model.robot import Limits
-from coord.solvers.linear import CREEP, SIZES, Cells, farthest, smoothest
+from coord.solvers.knots import CREEP, Cells
+from coord.solvers.linear import farthest, smoothest
 
 UNIT = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
 
@@ -28,7 +29,7 @@ def random_programs(count, *, tubes):
     """Random limits, cells, caps and (if asked for) tubes that hold back the first half and push on the second."""
     rng = np.random.default_rng(5)
     for k in range(count):
-        n = SIZES[k % 9]
+        n = (8, 12, 16, 24, 32, 40, 48, 56, 64)[k % 9]
         limits = Limits(*rng.uniform(0.3, 2.0, 4), 1.0)
         h = rng.uniform(0.1, 0.8, n)
         way = h.sum() * limits.speed

@@ -7,7 +7,8 @@ import pytest
 
 from coord.model.robot import Limits
 from coord.solvers.jerk import rest_to_rest
-from coord.solvers.linear import Cells, farthest
+from coord.solvers.knots import Cells
+from coord.solvers.linear import farthest
 from coord.solvers.movable import Freedom, Motion, moved
 
 LIMITS = Limits(1.0, 0.5, 0.5, 1.0, 0.5)
