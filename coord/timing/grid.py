@@ -27,7 +27,7 @@ _FIRST_CELL = 0.25
 _GROWTH = 1.5
 
 #: [s] Longest cell where no window is, and where one is.
-_LONGEST_FREE, _LONGEST_TAKEN = 1.5, 0.25
+_LONGEST_FREE, _LONGEST_TAKEN = 1.0, 0.25
 
 #: On long stretches without an event cells may last this share of the stretch.
 _OF_STRETCH = 1 / 40
@@ -37,7 +37,7 @@ _OF_STRETCH = 1 / 40
 _BENT, _CUTS, _UNCUT = 0.01, 6, 5e-3
 
 #: Cells of a grid.
-_FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 512, 2048
+_FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 640, 2048
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6
