@@ -214,8 +214,8 @@ def _relaxed(
     if bound >= most:
         return None, ""
 
-    def runs_elsewhere(course: Course) -> bool:  # then it only tells where to branch
-        return _first_violated(search, course.profile, chosen) is not None
+    def runs_elsewhere(profile: VelocityProfile) -> bool:  # then it only tells where to branch
+        return _first_violated(search, profile, chosen) is not None
 
     program = through_tube(ego, tube, bound, most, near or course, fine=search.is_last, is_enough=runs_elsewhere)
     if program is None or not _keeps_choices(search, chosen, program):

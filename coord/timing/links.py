@@ -151,8 +151,9 @@ class Stretch:
         since, ahead_lines = self.ahead.rows(a.speeds, a.high)
         until, back_lines = self.back.rows(b.speeds, -b.low)
         until, back_lines = until[:, ::-1], back_lines[:, ::-1]
-        some = np.unique(np.linspace(0, len(self.places) - 1, _MEETINGS).astype(int))
-        times = np.maximum(least, (since[:, None, some] + until[None, :, some]).max(axis=2))
+        times = least.copy()
+        for k in np.unique(np.linspace(0, len(self.places) - 1, _MEETINGS).astype(int)):
+            np.maximum(times, since[:, k, None] + until[None, :, k], out=times)
         # from the one acceleration to the other takes time as well
         np.maximum(times, (b.low[None] - a.high[:, None]) / self.limits.jerk, out=times)
         np.maximum(times, (a.low[:, None] - b.high[None]) / self.limits.jerk, out=times)

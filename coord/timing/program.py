@@ -57,7 +57,7 @@ _CORRECTIONS = 2
 
 def through_tube(
     ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, fine: bool = False,
-    is_enough: Callable[[Course], bool] = lambda course: False,
+    is_enough: Callable[[VelocityProfile], bool] = lambda profile: False,
 ) -> VelocityProfile | None:  # fmt: skip
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
 
@@ -69,7 +69,7 @@ def through_tube(
     ----------
     course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
     fine : whether a narrow tube is worth the finest grids.
-    is_enough : whether finer grids are of no use for a motion about such a course, on a path with bends.
+    is_enough : whether finer grids are of no use for a motion such as this one.
     """
     if not ego.caps.is_constant:
         return None if course is None else _round_bends(ego, tube, least, most, course, fine=fine, is_enough=is_enough)
@@ -83,7 +83,7 @@ def through_tube(
             best = profile
         if best is not None:
             most = best.arrival * (1 - _FINER)
-            if best.arrival <= least * (1 + _FINER) or (mesh in _FINER_MESHES and gains < _FINER):
+            if best.arrival <= least * (1 + _FINER) or (mesh in _FINER_MESHES and gains < _FINER) or is_enough(best):
                 break
     return best
 
@@ -163,7 +163,14 @@ def _reach(attempt: _Attempt, arrival: float) -> float:
 
 
 def _round_bends(
-    ego: Ego, tube: Tube, least: float, most: float, course: Course, *, fine: bool, is_enough: Callable[[Course], bool]
+    ego: Ego,
+    tube: Tube,
+    least: float,
+    most: float,
+    course: Course,
+    *,
+    fine: bool,
+    is_enough: Callable[[VelocityProfile], bool],
 ) -> VelocityProfile | None:
     """The quickest profile that rounds about a course lead to: finer ones only where they may gain something."""
     limits, departure = tightened(ego.robot.limits), held_until(ego, tube)
@@ -178,7 +185,7 @@ def _round_bends(
         for found in rounds(ego, tube, limits, mesh, most, settled, is_first=is_first, many=fine):
             settled, least_lacking = found, min(least_lacking, found, key=lambda one: one.lacks)
             if settled.is_near:
-                may_gain = settled.arrival > least * (1 + _FINER_IN_BENDS) and not is_enough(settled.course)
+                may_gain = settled.arrival > least * (1 + _FINER_IN_BENDS) and not is_enough(settled.course.profile)
                 if may_gain and finer is not None and _grid_of(finer, settled) is not None:
                     break
                 profile = _fitting(attempt, most, settled)

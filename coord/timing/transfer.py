@@ -52,12 +52,23 @@ class Rise:
         """The ways (n,) [m] up to speeds (n,)."""
         return (self.virtual + speed) / 2 * self._whole(speed) - self.behind
 
-    def growth(self, speed: Array) -> Array:
-        """How quickly the ways (n,) grow with the speeds (n,) [s]."""
-        more = np.maximum(speed - self.virtual, 1e-300)
-        long = speed / self.most + self.most / (2 * self.jerk)
-        short = np.sqrt(more / self.jerk) + (self.virtual + speed) / (2 * np.sqrt(more * self.jerk))
-        return np.where(more >= self.most**2 / self.jerk, long, short)
+    def way_and_growth(self, speed: Array) -> tuple[Array, Array]:
+        """The same, and how quickly they grow with the speeds (n,) [s]."""
+        more, mean, most = np.maximum(speed - self.virtual, 1e-300), (self.virtual + speed) / 2, self.most
+        root = np.sqrt(more / self.jerk)
+        is_long = more >= most**2 / self.jerk
+        whole = np.where(is_long, more / most + most / self.jerk, 2 * root)
+        growth = np.where(is_long, speed / most + most / (2 * self.jerk), root + mean / (root * self.jerk))
+        return mean * whole - self.behind, growth
+
+    def most_speed(self, other: Rise, way: Array) -> Array:
+        """Speeds (n,) [m/s] that are too high for this rise and an ``other`` one to fit into ways (n,) [m], or just.
+
+        A rise takes no less than the difference of the speeds over the limit of the acceleration.
+        """
+        own, theirs = 1 / (2 * self.most), 1 / (2 * other.most)
+        room = way + self.behind + other.behind + own * self.virtual**2 + theirs * other.virtual**2
+        return np.asarray(np.sqrt(np.maximum(room, 0.0) / (own + theirs)))
 
     def _whole(self, speed: Array) -> Array:
         more = np.maximum(speed - self.virtual, 0.0)
@@ -105,15 +116,14 @@ def least_times(first: Rise, last: Rise, length: Array, top: Array) -> Array:
 def _below_top(first: Rise, last: Rise, length: Array, top: Array, low: Array) -> Array:
     """The same where rise and fall up to the top speed are longer than the way: they fill it."""
 
-    def spare(speed: Array) -> Array:
-        return np.asarray(length - first.way(speed) - last.way(speed))
-
-    speed, step = top, np.zeros_like(low)
+    speed = np.maximum(np.minimum(top, first.most_speed(last, length)), low)
+    step = np.zeros_like(low)
     for _ in range(_STEPS):
-        step = spare(speed) / (first.growth(speed) + last.growth(speed))
-        speed = np.maximum(speed + np.minimum(step, 0.0), low)
-        if np.abs(step).max(initial=0.0) < _SETTLED:
+        (way, growth), (way_down, growth_down) = first.way_and_growth(speed), last.way_and_growth(speed)
+        slower = np.maximum(speed + np.minimum((length - way - way_down) / (growth + growth_down), 0.0), low)
+        step, speed = speed - slower, slower
+        if step.max(initial=0.0) < _SETTLED:
             break
-    below = np.maximum(speed - _BELOW - _STEP_SHARE * np.abs(step), low)
-    below = np.where(spare(below) >= 0, below, low)
+    below = np.maximum(speed - _BELOW - _STEP_SHARE * step, low)
+    below = np.where(length - first.way(below) - last.way(below) >= 0, below, low)
     return first.time(below) + last.time(below)
