@@ -19,8 +19,8 @@ Term: TypeAlias = tuple[Columns, Array | float]
 #: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
 _DIAGONAL = 1e-7
 
-#: Iterations at most.
-_MOST = 60
+#: Iterations at most, and of large programs, with more unknowns than the second.
+_MOST, _MOST_OF_LARGE, _LARGE = 60, 120, 2000
 
 #: Tolerances of PIQP where a solution is only a step on the way to the next.
 COARSE = {"eps_abs": 1e-6, "eps_rel": 1e-7, "eps_duality_gap_abs": 1e-6, "eps_duality_gap_rel": 1e-6}
@@ -69,7 +69,8 @@ class Assembly:
         each = np.arange(self.count)
         squares = _matrix([*self._squares, (each, each, np.full(self.count, _DIAGONAL))], self.count, self.count)
         rows = _matrix(self._rows, self._height, self.count)
-        options = {"max_iter": _MOST, "verbose": False, **(tolerances or {})}
+        most = _MOST_OF_LARGE if self.count > _LARGE else _MOST
+        options = {"max_iter": most, "verbose": False, **(tolerances or {})}
         solver = casadi.conic(
             "assembly",
             "piqp",

@@ -50,7 +50,7 @@ class Search:
     best, how : the quickest profile found so far, and how it came about.
     contacts : with windows passed after, as far as they are known already.
     known : meetings, by index, that came up.
-    is_last : whether nothing comes after this search, so that more time may be spent.
+    effort : how much time may be spent: 0 where a closer search may follow, else 1, or 2 for the closest there is.
     """
 
     ego: Ego
@@ -64,7 +64,7 @@ class Search:
     truly: dict[int, list[Forbidden]] = field(default_factory=dict)
     fits: Fits = field(default_factory=dict)
     known: set[int] = field(default_factory=set)
-    is_last: bool = False
+    effort: int = 0
     is_sharp: bool = False
 
     def window(self, index: int) -> Window:
@@ -109,7 +109,7 @@ class Search:
         """Tighten what is known of bends, before much time is spent on what that may settle; whether it was not yet."""
         if self.is_sharp or self.ego.caps.is_constant:
             return False
-        self.ego, self.is_sharp = sharpened(self.ego, _SHARPER if self.is_last else _SHARP), True
+        self.ego, self.is_sharp = sharpened(self.ego, _SHARPER if self.effort else _SHARP), True
         self.claims.clear()
         self.fits.clear()
         return True
@@ -217,7 +217,7 @@ def _relaxed(
     def runs_elsewhere(profile: VelocityProfile) -> bool:  # then it only tells where to branch
         return _first_violated(search, profile, chosen) is not None
 
-    program = through_tube(ego, tube, bound, most, near or course, fine=search.is_last, is_enough=runs_elsewhere)
+    program = through_tube(ego, tube, bound, most, near or course, effort=search.effort, is_enough=runs_elsewhere)
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"

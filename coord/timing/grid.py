@@ -37,7 +37,7 @@ _OF_STRETCH = 1 / 40
 _BENT, _CUTS, _UNCUT = 0.01, 6, 5e-3
 
 #: Cells of a grid.
-_FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 640, 2048
+_FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 640, 4096
 
 #: [s] Events nearer than this to each other are one.
 _SAME_TIME = 1e-6

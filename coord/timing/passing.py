@@ -26,6 +26,9 @@ _EFFORTS = ((40, _ENOUGH), (600, CLOSED))
 #: Where more meetings came up than these, windows are not refined, and so many relaxations do.
 _FEW, _MOST_OF_MANY = 16, 20
 
+#: Where no more came up, a gap that is left is worth the finest grids.
+_VERY_FEW = 3
+
 #: A bound is worked out from so many meetings at most.
 _MOST_MEETINGS = 24
 
@@ -79,7 +82,10 @@ def time_robot(
     found = _found(ego, meetings, certify=certify, hurried=hurried)
     if not hurried and len(found.search.known) <= _FEW and found.is_loose:
         finer = [meeting.refined() for meeting in meetings]
-        found = found.or_rather(_found(ego, finer, certify=certify, is_last=True))
+        found = found.or_rather(_found(ego, finer, certify=certify, effort=1))
+        if found.is_stubborn:
+            finest = [meeting.refined().refined() for meeting in finer]
+            found = found.or_rather(_found(ego, finest, certify=certify, effort=2))
     search = found.search
     if search.how == _NONE:
         return None
@@ -114,6 +120,13 @@ class _Found:
             return True
         return least_arrival(search.ego, [search.claim(index) for index in sorted(search.known)], arrival) >= few
 
+    @property
+    def is_stubborn(self) -> bool:
+        """Whether a gap is left that the finest grids may close, on a path without bends past very few robots."""
+        search = self.search
+        is_simple = search.ego.caps.is_constant and len(search.known) <= _VERY_FEW
+        return is_simple and self.bound < search.best.arrival * (1 - _ENOUGH)
+
     def or_rather(self, other: _Found) -> _Found:
         """The earlier of both, with what both have shown; the later one's choices say nothing if it is much later."""
         first, later = (other, self) if other.search.best.arrival < self.search.best.arrival else (self, other)
@@ -122,16 +135,16 @@ class _Found:
         return _Found(first.search, max(self.bound, other.bound), self.nodes + other.nodes, is_open)
 
 
-def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = False, is_last: bool = False) -> _Found:
+def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = False, effort: int = 0) -> _Found:
     """The quickest profile past the windows of some meetings.
 
-    ``is_last`` : whether what is open after the search of the tree is worth any more time.
+    ``effort`` : whether what is open after the search of the tree is worth any more time, and how much.
     """
     contacts: dict[int, Contact] = {}
     delayed = start_delay(ego.alone, meetings, contacts)
     # where no delay helps, ego has to be gone before somebody comes: then anything is better than a time far away
     how = _NONE if delayed is None else "start delay"
-    search = Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts, is_last=is_last)
+    search = Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts, effort=effort)
     nodes, is_open = branch_and_bound(search)
     if hurried and search.how != _NONE:
         return _Found(search, ego.solo_bound, nodes, True)
@@ -140,7 +153,7 @@ def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = 
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
     is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, sorted(near), search.best)
-    if is_open and not is_last and not hurried and len(search.known) <= _FEW:
+    if is_open and not effort and not hurried and len(search.known) <= _FEW:
         return _Found(search, bound, nodes, True)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):

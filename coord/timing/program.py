@@ -26,14 +26,14 @@ from coord.timing.rounds import LACK, Settled, first_guess, is_hopeless, rounds
 from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
-#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow. The finest are for tubes
-#: that nothing else decides.
-_MESHES, _FINER_MESHES = (1.0, 0.4, 0.16, 0.07), (0.03, 0.015)
+#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow. The finest, by effort, are for
+#: tubes that nothing else decides.
+_MESHES, _FINER_MESHES = (1.0, 0.4, 0.16, 0.07), ((), (0.03, 0.015), (0.03, 0.015, 0.008))
 
 #: [1] A finer grid is worth its while as long as this share of the arrival may be gained; with bends it costs more.
 _FINER, _FINER_IN_BENDS = 5e-4, 1e-3
 
-#: [s] The search for the arrival ends when it rises by less than this.
+#: [s] The search for the arrival ends when it rises by less than this; by less still on the finest grids.
 _ARRIVAL_STEP = 2e-3
 
 #: Steps of that search at most: a few suffice where motions are found.
@@ -56,7 +56,7 @@ _CORRECTIONS = 2
 
 
 def through_tube(
-    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, fine: bool = False,
+    ego: Ego, tube: Tube, least: float, most: float, course: Course | None = None, *, effort: int = 0,
     is_enough: Callable[[VelocityProfile], bool] = lambda profile: False,
 ) -> VelocityProfile | None:  # fmt: skip
     """The quickest profile through a tube with an arrival between ``least`` and ``most`` [s]; None if none is found.
@@ -68,14 +68,18 @@ def through_tube(
     Parameters
     ----------
     course : a rough motion through the tube, which a path with bends needs: it says which cells are in which bend.
-    fine : whether a narrow tube is worth the finest grids.
+    effort : 0, or 1 and 2 where a narrow tube is worth finer and the finest grids.
     is_enough : whether finer grids are of no use for a motion such as this one.
     """
     if not ego.caps.is_constant:
-        return None if course is None else _round_bends(ego, tube, least, most, course, fine=fine, is_enough=is_enough)
+        return (
+            None
+            if course is None
+            else _round_bends(ego, tube, least, most, course, fine=effort > 0, is_enough=is_enough)
+        )
     best = None
-    for mesh in (*_MESHES, *_FINER_MESHES) if fine else _MESHES:
-        many = mesh in _FINER_MESHES
+    for mesh in (*_MESHES, *_FINER_MESHES[effort]):
+        many = mesh < _MESHES[-1]
         attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh, many)
         profile = _through(attempt, least, most)
         gains = 0.0 if profile is None else 1.0 if best is None else best.arrival / profile.arrival - 1
@@ -83,7 +87,7 @@ def through_tube(
             best = profile
         if best is not None:
             most = best.arrival * (1 - _FINER)
-            if best.arrival <= least * (1 + _FINER) or (mesh in _FINER_MESHES and gains < _FINER) or is_enough(best):
+            if best.arrival <= least * (1 + _FINER) or (many and gains < _FINER) or is_enough(best):
                 break
     return best
 
@@ -117,12 +121,17 @@ class _Attempt:
     mesh: float
     many: bool = False
 
+    @property
+    def step(self) -> float:
+        """How close [s] the arrival is sought."""
+        return _ARRIVAL_STEP * min(1.0, self.mesh / _MESHES[-1])
+
 
 def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | None:
     if _reach(attempt, most) < 0:
         return None
     arrival = _least(attempt, least, most)
-    for pause in (0.0, _ARRIVAL_STEP, 3 * _ARRIVAL_STEP, 10 * _ARRIVAL_STEP):
+    for pause in (0.0, attempt.step, 3 * attempt.step, 10 * attempt.step):
         at = min(arrival + pause, most)
         profile = _smooth(attempt, at, None)
         if profile is not None:
@@ -143,10 +152,10 @@ def _least(attempt: _Attempt, least: float, most: float) -> float:
     arrival = min(low, high)
     for _ in range(_MOST_STEPS):
         reached = _reach(attempt, arrival) / speed
-        if abs(reached) <= _ARRIVAL_STEP:
+        if abs(reached) <= attempt.step:
             return arrival
         low, high = (arrival, high) if reached < 0 else (low, arrival)
-        if high - low <= _ARRIVAL_STEP:
+        if high - low <= attempt.step:
             break
         arrival = arrival - reached if low < arrival - reached < high else (low + high) / 2
     return high

@@ -115,7 +115,6 @@ def least_times(first: Rise, last: Rise, length: Array, top: Array) -> Array:
 
 def _below_top(first: Rise, last: Rise, length: Array, top: Array, low: Array) -> Array:
     """The same where rise and fall up to the top speed are longer than the way: they fill it."""
-
     speed = np.maximum(np.minimum(top, first.most_speed(last, length)), low)
     step = np.zeros_like(low)
     for _ in range(_STEPS):
