@@ -26,8 +26,8 @@ from coord.timing.rounds import LACK, Settled, first_guess, is_hopeless, rounds
 from coord.timing.tube import Tube
 from coord.tolerances import LIMIT_MARGIN
 
-#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow. The finest, by effort, are for
-#: tubes that nothing else decides.
+#: Scales of the cells: the finer grid is for tubes that the coarser one finds too narrow. The finest, by effort, are
+#: for tubes that nothing else decides.
 _MESHES, _FINER_MESHES = (1.0, 0.4, 0.16, 0.07), ((), (0.03, 0.015), (0.03, 0.015, 0.008))
 
 #: [1] A finer grid is worth its while as long as this share of the arrival may be gained; with bends it costs more.
