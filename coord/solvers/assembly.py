@@ -70,7 +70,12 @@ class Assembly:
         squares = _matrix([*self._squares, (each, each, np.full(self.count, _DIAGONAL))], self.count, self.count)
         rows = _matrix(self._rows, self._height, self.count)
         most = _MOST_OF_LARGE if self.count > _LARGE else _MOST
-        options = {"max_iter": most, "verbose": False, "kkt_solver": "sparse_ldlt_ineq_cond", **(tolerances or {})}
+        options: dict[str, Any] = {
+            "max_iter": most,
+            "verbose": False,
+            "kkt_solver": "sparse_ldlt_ineq_cond",
+            **(tolerances or {}),
+        }
         solver = casadi.conic(
             "assembly",
             "piqp",

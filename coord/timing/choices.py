@@ -51,6 +51,7 @@ class Search:
     contacts : with windows passed after, as far as they are known already.
     known : meetings, by index, that came up.
     effort : how much time may be spent: 0 where a closer search may follow, else 1, or 2 for the closest there is.
+    sharp : rounds in which the bounds of bends were tightened.
     """
 
     ego: Ego
@@ -65,7 +66,7 @@ class Search:
     fits: Fits = field(default_factory=dict)
     known: set[int] = field(default_factory=set)
     effort: int = 0
-    is_sharp: bool = False
+    sharp: int = 0
 
     def window(self, index: int) -> Window:
         """The window of a meeting."""
@@ -107,9 +108,10 @@ class Search:
 
     def sharpen(self) -> bool:
         """Tighten what is known of bends, before much time is spent on what that may settle; whether it was not yet."""
-        if self.is_sharp or self.ego.caps.is_constant:
+        rounds = (_SHARPER if self.effort else _SHARP) - self.sharp
+        if rounds <= 0 or self.ego.caps.is_constant:
             return False
-        self.ego, self.is_sharp = sharpened(self.ego, _SHARPER if self.effort else _SHARP), True
+        self.ego, self.sharp = sharpened(self.ego, rounds), self.sharp + rounds
         self.claims.clear()
         self.fits.clear()
         return True

@@ -82,7 +82,7 @@ def time_robot(
     found = _found(ego, meetings, certify=certify, hurried=hurried)
     if not hurried and len(found.search.known) <= _FEW and found.is_loose:
         finer = [meeting.refined() for meeting in meetings]
-        found = found.or_rather(_found(ego, finer, certify=certify, effort=1))
+        found = found.or_rather(_found(found.search.ego, finer, certify=certify, effort=1, sharp=found.search.sharp))
         if found.is_stubborn:
             finest = [meeting.refined().refined() for meeting in finer]
             found = found.or_rather(_found(ego, finest, certify=certify, effort=2))
@@ -135,16 +135,19 @@ class _Found:
         return _Found(first.search, max(self.bound, other.bound), self.nodes + other.nodes, is_open)
 
 
-def _found(ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = False, effort: int = 0) -> _Found:
+def _found(
+    ego: Ego, meetings: list[Meeting], *, certify: bool, hurried: bool = False, effort: int = 0, sharp: int = 0
+) -> _Found:
     """The quickest profile past the windows of some meetings.
 
-    ``effort`` : whether what is open after the search of the tree is worth any more time, and how much.
+    ``effort`` : whether what is open after the search of the tree is worth any more time, and how much; ``sharp`` :
+    rounds in which the bounds of bends were tightened before.
     """
     contacts: dict[int, Contact] = {}
     delayed = start_delay(ego.alone, meetings, contacts)
     # where no delay helps, ego has to be gone before somebody comes: then anything is better than a time far away
     how = _NONE if delayed is None else "start delay"
-    search = Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts, effort=effort)
+    search = Search(ego, meetings, delayed or _far_away(ego, meetings), how, contacts, effort=effort, sharp=sharp)
     nodes, is_open = branch_and_bound(search)
     if hurried and search.how != _NONE:
         return _Found(search, ego.solo_bound, nodes, True)
