@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import casadi
@@ -17,13 +19,22 @@ Columns: TypeAlias = npt.NDArray[np.intp]
 Term: TypeAlias = tuple[Columns, Array | float]
 
 #: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
-_DIAGONAL = 1e-7
+DIAGONAL = 1e-7
 
-#: Iterations at most, and of large programs, with more unknowns than the second.
-_MOST, _MOST_OF_LARGE, _LARGE = 60, 120, 2000
+#: Iterations at most; twice as many for large programs, with more unknowns than this.
+_MOST, _LARGE = 60, 2000
 
 #: Tolerances of PIQP where a solution is only a step on the way to the next.
 COARSE = {"eps_abs": 1e-6, "eps_rel": 1e-7, "eps_duality_gap_abs": 1e-6, "eps_duality_gap_rel": 1e-6}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """What the solver returns for the unknowns, and for the multipliers of the rows; whether it met its tolerances."""
+
+    x: Array
+    multipliers: Array
+    is_solved: bool
 
 
 class Assembly:
@@ -32,10 +43,11 @@ class Assembly:
     Parameters
     ----------
     unknowns : how many there are; those without a box are free.
+    diagonal : half of the weight of every squared unknown.
     """
 
-    def __init__(self, unknowns: int) -> None:
-        self.count = unknowns
+    def __init__(self, unknowns: int, diagonal: float = DIAGONAL) -> None:
+        self.count, self.diagonal = unknowns, diagonal
         self.low, self.high = np.full(unknowns, -np.inf), np.full(unknowns, np.inf)
         self.cost = np.zeros(unknowns)
         self._rows: list[tuple[Columns, Columns, Array]] = []
@@ -64,14 +76,13 @@ class Assembly:
         self.low[columns] = np.maximum(self.low[columns], np.broadcast_to(low, here.shape)[here])
         self.high[columns] = np.minimum(self.high[columns], np.broadcast_to(high, here.shape)[here])
 
-    def solve(self, tolerances: Mapping[str, float] | None = None) -> tuple[Array, bool]:
-        """What the solver returns for the unknowns, and whether it met its tolerances."""
+    def solve(self, tolerances: Mapping[str, float] | None = None, most: int = _MOST) -> Solution:
+        """What the solver finds in at most so many iterations."""
         each = np.arange(self.count)
-        squares = _matrix([*self._squares, (each, each, np.full(self.count, _DIAGONAL))], self.count, self.count)
+        squares = _matrix([*self._squares, (each, each, np.full(self.count, self.diagonal))], self.count, self.count)
         rows = _matrix(self._rows, self._height, self.count)
-        most = _MOST_OF_LARGE if self.count > _LARGE else _MOST
         options: dict[str, Any] = {
-            "max_iter": most,
+            "max_iter": 2 * most if self.count > _LARGE else most,
             "verbose": False,
             "kkt_solver": "sparse_ldlt_ineq_cond",
             **(tolerances or {}),
@@ -82,9 +93,32 @@ class Assembly:
             {"h": squares.sparsity(), "a": rows.sparsity()},
             {"error_on_fail": False, "print_time": False, "piqp": options},
         )
-        low, high = (np.concatenate(bounds) for bounds in zip(*self._bounds, strict=True))
+        low, high = self._row_bounds()
         found = solver(h=squares, g=self.cost, a=rows, lba=low, uba=high, lbx=self.low, ubx=self.high)
-        return np.asarray(found["x"]).ravel(), bool(solver.stats()["success"])
+        x, multipliers = np.asarray(found["x"]).ravel(), np.asarray(found["lam_a"]).ravel()
+        return Solution(x, multipliers, bool(solver.stats()["success"]))
+
+    def least_cost(self, multipliers: Array) -> float:
+        """A bound that no choice of the unknowns beats, the squares left out, from whatever multipliers of the rows.
+
+        It is the dual function; every unknown must have a box.
+        """
+        low, high = self._row_bounds()
+        multipliers = np.where(np.isfinite(high), multipliers, np.minimum(multipliers, 0.0))
+        multipliers = np.where(np.isfinite(low), multipliers, np.maximum(multipliers, 0.0))
+        rows, columns, values = (np.concatenate(parts) for parts in zip(*self._rows, strict=True))
+        reduced = self.cost + np.bincount(columns, values * multipliers[rows], minlength=self.count)
+        return _least(reduced, self.low, self.high) + _least(-multipliers, low, high)
+
+    def _row_bounds(self) -> tuple[Array, Array]:
+        low, high = (np.concatenate(bounds) for bounds in zip(*self._bounds, strict=True))
+        return low, high
+
+
+def _least(weights: Array, low: Array, high: Array) -> float:
+    """The least sum of weights (m,) times values that lie between ``low`` and ``high`` (m,)."""
+    bounds = np.where(weights > 0, low, high)
+    return math.fsum(np.where(weights == 0, 0.0, weights * np.where(weights == 0, 0.0, bounds)).tolist())
 
 
 def _known(rows: Columns, columns: Columns, values: Array | float) -> tuple[Columns, Columns, Array]:

@@ -50,5 +50,5 @@ def _program(cells: Cells, limits: Limits) -> tuple[Assembly, Knots]:
 def _states(program: Assembly, at: Knots, cells: Cells) -> Array | None:
     if cells.is_contradictory:
         return None
-    x, is_solved = program.solve()
-    return at.states(x) if is_solved else None
+    found = program.solve()
+    return at.states(found.x) if found.is_solved else None

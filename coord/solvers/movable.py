@@ -88,7 +88,7 @@ def moved(cells: Cells, limits: Limits, length: float, about: Motion, freedom: F
     add_smoothness(program, at, cells.h, _SMOOTH / limits.jerk**2)
     program.box(np.array([lacking]), 0.0, length + 1.0)
     program.cost[lacking] = _PENALTY
-    x, _ = program.solve(COARSE)
+    x = program.solve(COARSE).x
     if not np.all(np.isfinite(x)):
         return None
     shift, states = shifts.at_knots(x), at.states(x)

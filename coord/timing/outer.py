@@ -16,7 +16,7 @@ import numpy as np
 
 from coord.model.arrays import Array
 from coord.model.profile import VelocityProfile
-from coord.solvers.relaxation import SIZES, Stages, farthest_bound
+from coord.solvers.relaxation import Stages, farthest_bound
 from coord.timing.clock import clock
 from coord.timing.ego import Ego
 from coord.timing.grid import Course
@@ -24,6 +24,9 @@ from coord.timing.reach import Cut, Marks, Part, Reach, ranges, reach_by, settle
 
 #: [s] About the duration of the cells of the relaxation; and how many there are at least and at most.
 _CELL, _FEWEST, _MOST = 0.3, 48, 160
+
+#: Nor are there ever more cells than these.
+MOST_CELLS = 512
 
 #: [m] Less than this inside a place that is taken, and [m/s] faster than a bend allows: nothing is left to settle.
 _DEEP, _FAST = 2e-3, 5e-3
@@ -225,15 +228,15 @@ def _stages(reach: Reach, bounds: Marks, further: Sequence[float]) -> tuple[Stag
 
 
 def _knots(departure: float, arrival: float, further: Sequence[float]) -> Array:
-    """Knots at about even distances and at further times [s], as many as a program has."""
+    """Knots at about even distances and at further times [s]."""
     count = int(np.clip(np.ceil((arrival - departure) / _CELL), _FEWEST, _MOST))
     given = np.unique(np.clip(np.array([departure, arrival, *further]), departure, arrival))
     given = given[np.append(True, np.diff(given) > _APART)]
-    if len(given) > SIZES[-1] + 1:  # bends beyond number: fewer knots only loosen the bounds
-        given = given[np.linspace(0, len(given) - 1, SIZES[-1] + 1).astype(int)]
+    if len(given) > MOST_CELLS + 1:  # bends beyond number: fewer knots only loosen the bounds
+        given = given[np.linspace(0, len(given) - 1, MOST_CELLS + 1).astype(int)]
     given[-1] = arrival
     knots = given.tolist()
-    size = next(size for size in SIZES if size >= max(count, len(knots) - 1))
+    size = max(count, len(knots) - 1)
     parts = np.maximum(1, np.floor(np.diff(given) / (arrival - departure) * size)).astype(int)
     while parts.sum() > size:
         parts[int(np.argmax(parts))] -= 1
