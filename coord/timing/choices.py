@@ -197,9 +197,6 @@ def _relaxed(
     delay = max((contact.delay for contact in afters), default=0.0)
     if delay <= min((contact.delay for contact in befores), default=np.inf):
         return search.ego.alone.shifted(max(delay, 0.0)), "start delay"
-    for profile in spliced(search.ego, afters, befores):
-        if _keeps_choices(search, chosen, profile) and keeps_limits(profile, search.ego.robot.limits, search.ego.caps):
-            return profile, "splice"
     tube = Tube(
         [after_bound(search.window(index)) for index, passes_after in chosen.items() if passes_after],
         [before_bound(search.window(index)) for index, passes_after in chosen.items() if not passes_after],
@@ -208,6 +205,9 @@ def _relaxed(
     course = None if ego.caps.is_constant else hasty_course(ego, tube)
     if course is not None and _first_violated(search, course.profile, chosen) is not None:
         return course.profile, _COURSE
+    for profile in spliced(ego, afters, befores):
+        if _keeps_choices(search, chosen, profile) and keeps_limits(profile, ego.robot.limits, ego.caps):
+            return profile, "splice"
     if search.sharpen():
         bound = max(bound, _bound(search, chosen))
         if not _can_beat(bound, search.best):
