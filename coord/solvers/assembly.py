@@ -43,7 +43,7 @@ class Assembly:
     Parameters
     ----------
     unknowns : how many there are; those without a box are free.
-    diagonal : half of the weight of every squared unknown.
+    diagonal : what every squared unknown costs, by halves.
     """
 
     def __init__(self, unknowns: int, diagonal: float = DIAGONAL) -> None:
@@ -63,7 +63,7 @@ class Assembly:
         self._rows += [_known(rows, columns, values) for columns, values in terms]
 
     def squares(self, weights: Array, *terms: Term) -> None:
-        """Further costs: half the weighted (m,) squares of the sums of the terms."""
+        """Further costs, by halves: the weighted (m,) squares of the sums of the terms."""
         for own, value in terms:
             for other, factor in terms:
                 here = own >= 0
@@ -118,7 +118,7 @@ class Assembly:
 def _least(weights: Array, low: Array, high: Array) -> float:
     """The least sum of weights (m,) times values that lie between ``low`` and ``high`` (m,)."""
     bounds = np.where(weights > 0, low, high)
-    return math.fsum(np.where(weights == 0, 0.0, weights * np.where(weights == 0, 0.0, bounds)).tolist())
+    return math.fsum(np.multiply(weights, bounds, out=np.zeros_like(weights), where=weights != 0).tolist())
 
 
 def _known(rows: Columns, columns: Columns, values: Array | float) -> tuple[Columns, Columns, Array]:

@@ -58,8 +58,8 @@ def test_wrong_multipliers_only_loosen_the_bound(monkeypatch, noise):
     arrival = rest_to_rest(length, LIMITS).arrival
     rng, solve = np.random.default_rng(0), Assembly.solve
 
-    def noisy(program, *arguments):
-        found = solve(program, *arguments)
+    def noisy(program, **arguments):
+        found = solve(program, **arguments)
         return dataclasses.replace(found, multipliers=found.multipliers + rng.normal(0, noise, len(found.multipliers)))
 
     monkeypatch.setattr(Assembly, "solve", noisy)

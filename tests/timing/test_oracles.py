@@ -37,6 +37,14 @@ def test_brute_force_over_before_and_after_finds_the_same_optimum():
         assert abs(row.excess) <= oracles.PROMISED
 
 
+@pytest.mark.long
+def test_a_gap_of_millimetres_between_two_windows_is_found():
+    """Only the finest grids past the nearest windows show it: 7 % earlier than letting both pass."""
+    found = oracles.choices(144)
+    assert found.how == "program"
+    assert abs(found.excess) <= oracles.PROMISED
+
+
 def test_with_jerk_all_but_free_the_optimum_is_that_without_jerk():
     """A program that knows no jerk finds the same to a thousandth."""
     for row in checked(oracles.without_jerk, range(5)):

@@ -59,3 +59,19 @@ def test_no_motion_that_begins_and_ends_slower_is_quicker(seed):
     for _ in range(30):
         (v0, v1), (a0, a1) = rng.uniform(0.6, 1.0, 2) * speeds, a - rng.uniform(0.0, 1.0, 2) * width
         assert time_of((v0, a0), (v1, a1), length, limits.speed) >= found - 1e-9
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_rise_and_fall_up_to_the_most_speed_are_no_shorter_than_the_way(seed):
+    """So the search for the greatest speed, which comes down from there, begins no lower than where it ends."""
+    rng, limits, speeds, accelerations, length = scene(seed)
+    top, a = np.array([10 * limits.speed]), np.array(accelerations)
+    first = rise(np.array(speeds[:1]), a[:1], a[:1], np.array([limits.acceleration]), limits.jerk, top)
+    last = rise(np.array(speeds[1:]), -a[1:], -a[1:], np.array([limits.deceleration]), limits.jerk, top)
+    way = np.array([length * float(rng.uniform(0.5, 4.0))])
+    most = first.most_speed(last, way)
+    assert first.way(most) + last.way(most) >= way - 1e-9
+    both = first.way_and_growth(most)
+    assert both[0] == pytest.approx(first.way(most), abs=1e-12)
+    step = 1e-6
+    assert both[1] == pytest.approx((first.way(most + step) - first.way(most - step)) / (2 * step), rel=1e-4)
