@@ -26,8 +26,9 @@ _EFFORTS = ((40, _ENOUGH), (600, CLOSED))
 #: Where more meetings came up than these, windows are not refined, and so many relaxations do.
 _FEW, _MOST_OF_MANY = 16, 20
 
-#: Where no more came up, a gap that is left is worth the finest grids.
-_VERY_FEW = 3
+#: Where no more came up, and the robot is there within so many seconds, a gap that a program leaves is worth the finest
+#: grids, whose cells become many.
+_VERY_FEW, _SHORT = 3, 30.0
 
 #: A bound is worked out from so many meetings at most.
 _MOST_MEETINGS = 24
@@ -122,10 +123,11 @@ class _Found:
 
     @property
     def is_stubborn(self) -> bool:
-        """Whether a gap is left that the finest grids may close, on a path without bends past very few robots."""
-        search = self.search
+        """Whether a program left a gap that the finest grids may close: a short time without bends past few robots."""
+        search, arrival = self.search, self.search.best.arrival
         is_simple = search.ego.caps.is_constant and len(search.known) <= _VERY_FEW
-        return is_simple and self.bound < search.best.arrival * (1 - _ENOUGH)
+        is_short = arrival - search.ego.alone.departure <= _SHORT
+        return search.how == "program" and is_simple and is_short and self.bound < arrival * (1 - _ENOUGH)
 
     def or_rather(self, other: _Found) -> _Found:
         """The earlier of both, with what both have shown; the later one's choices say nothing if it is much later."""
