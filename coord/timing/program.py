@@ -79,7 +79,7 @@ def through_tube(
         )
     best = None
     for mesh in (*_MESHES, *_FINER_MESHES[effort]):
-        many = mesh < _MESHES[-1]
+        many = effort > 0 and mesh <= _MESHES[-1]
         attempt = _Attempt(ego, tube, tightened(ego.robot.limits), held_until(ego, tube), mesh, many)
         profile = _through(attempt, least, most)
         gains = 0.0 if profile is None else 1.0 if best is None else best.arrival / profile.arrival - 1
@@ -131,8 +131,8 @@ def _through(attempt: _Attempt, least: float, most: float) -> VelocityProfile | 
     if _reach(attempt, most) < 0:
         return None
     arrival = _least(attempt, least, most)
-    for pause in (0.0, attempt.step, 3 * attempt.step, 10 * attempt.step):
-        at = min(arrival + pause, most)
+    for pause in (1.0, 3.0, 10.0) if attempt.many else (0.0, 1.0, 3.0, 10.0):  # what does not fit takes longest
+        at = min(arrival + pause * attempt.step, most)
         profile = _smooth(attempt, at, None)
         if profile is not None:
             return profile
