@@ -19,7 +19,7 @@ Columns: TypeAlias = npt.NDArray[np.intp]
 Term: TypeAlias = tuple[Columns, Array | float]
 
 #: PIQP needs a little curvature everywhere; this is too little to move a solution visibly.
-DIAGONAL = 1e-7
+_DIAGONAL = 1e-7
 
 #: Iterations at most; twice as many for large programs, with more unknowns than this.
 _MOST, _LARGE = 60, 2000
@@ -46,7 +46,7 @@ class Assembly:
     diagonal : what every squared unknown costs, by halves.
     """
 
-    def __init__(self, unknowns: int, diagonal: float = DIAGONAL) -> None:
+    def __init__(self, unknowns: int, diagonal: float = _DIAGONAL) -> None:
         self.count, self.diagonal = unknowns, diagonal
         self.low, self.high = np.full(unknowns, -np.inf), np.full(unknowns, np.inf)
         self.cost = np.zeros(unknowns)

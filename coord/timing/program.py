@@ -72,11 +72,9 @@ def through_tube(
     is_enough : whether finer grids are of no use for a motion such as this one.
     """
     if not ego.caps.is_constant:
-        return (
-            None
-            if course is None
-            else _round_bends(ego, tube, least, most, course, fine=effort > 0, is_enough=is_enough)
-        )
+        if course is None:
+            return None
+        return _round_bends(ego, tube, least, most, course, fine=effort > 0, is_enough=is_enough)
     best = None
     for mesh in (*_MESHES, *_FINER_MESHES[effort]):
         many = effort > 0 and mesh <= _MESHES[-1]
