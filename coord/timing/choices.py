@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from coord.alone.check import keeps_limits
 from coord.conflicts.window import Window
 from coord.model.profile import VelocityProfile
 from coord.timing.bounds import Claim, Fits, Forbidden, are_compatible, forbidden, window_claim
 from coord.timing.closing import CLOSED
+from coord.timing.corridor import Corridor, corridor
 from coord.timing.delay import Contact, after_contact, before_contact
 from coord.timing.ego import Ego, sharpened
 from coord.timing.grid import Course
@@ -205,9 +205,10 @@ def _relaxed(
     course = None if ego.caps.is_constant else hasty_course(ego, tube)
     if course is not None and _first_violated(search, course.profile, chosen) is not None:
         return course.profile, _COURSE
-    for profile in spliced(ego, afters, befores):
-        if _keeps_choices(search, chosen, profile) and keeps_limits(profile, ego.robot.limits, ego.caps):
-            return profile, "splice"
+    if np.isfinite(delay) and min((contact.delay for contact in befores), default=0.0) >= 0:
+        for profile in spliced(ego, _corridor(search, chosen), delay):
+            if _keeps_choices(search, chosen, profile):
+                return profile, "splice"
     if search.sharpen():
         bound = max(bound, _bound(search, chosen))
         if not _can_beat(bound, search.best):
@@ -223,6 +224,12 @@ def _relaxed(
     if program is None or not _keeps_choices(search, chosen, program):
         return None, ""
     return program, "program"
+
+
+def _corridor(search: Search, chosen: Mapping[int, bool]) -> Corridor:
+    """The delays that the choices ask for and allow."""
+    sides = [[search.window(index) for index, after in chosen.items() if after is side] for side in (True, False)]
+    return corridor(search.ego.alone, *sides)
 
 
 def _first_violated(search: Search, profile: VelocityProfile, besides: Mapping[int, bool]) -> int | None:

@@ -1,101 +1,95 @@
 """Giving way on the move: the quickest profile, delayed in steps.
 
-Up to some place the robot follows its quickest profile with one delay, so that it passes before some robots;
-then it slows down, lets others pass and speeds up again, and from then on follows the same profile with a
+From its start on, or up to some place, the robot follows its quickest profile with one delay, so that it passes before
+some robots; then it slows down, lets others pass and speeds up again, and from then on follows the same profile with a
 larger delay. Each step is one arc of ruckig with exactly the duration in between.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import product
+import itertools
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from coord.alone.check import keeps_limits
 from coord.alone.inverse import time_at
 from coord.model.arrays import frozen
 from coord.model.profile import VelocityProfile
 from coord.solvers.jerk import SHORTEST_PHASE, motion
-from coord.timing.delay import Contact
+from coord.timing.corridor import Corridor, Step, stairs
 from coord.timing.ego import Ego
 
-#: Shares of the time between two contacts at which an arc may begin, counted back from its end.
-_BEGINNINGS = (1.0, 0.6, 0.35)
+#: [s] An arc begins so long before more delay is allowed and ends so long after it is needed, if need be: how much of
+#: either the windows bear only the check of the whole tells.
+_BEYOND = (
+    (0.0, 0.0), (0.0, 0.25), (0.25, 0.0), (0.3, 0.3), (0.0, 0.6), (0.6, 0.0), (0.6, 0.6), (0.0, 1.2), (1.2, 0.0),
+    (1.2, 1.2),
+)  # fmt: skip
 
-#: [s] How long after the contact the arc may end: the profile must be joined with its speed and acceleration.
-_ENDINGS = (0.0, 0.25, 0.6, 1.2, 2.5)
+#: [m] Nor does it begin or end at the border of a bend that is nearer than this to where it would anyway.
+_NEAR = 0.05
+
+#: An arc may begin after these shares of the time for it.
+_BEGINNINGS = (0.0, 0.4, 0.65)
+
+#: So many arcs are tried for a step, so many of those that exist are kept, and so many profiles up to there.
+_TRIED, _KEPT, _MOST = 8, 3, 3
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """At the contact's place the delay must be at least (after) or at most (before) the contact's."""
+def spliced(ego: Ego, bounds: Corridor, delay: float) -> Iterator[VelocityProfile]:
+    """Profiles within the limits whose delay rises to the last one [s], the most promising first.
 
-    contact: Contact
-    is_after: bool
-
-
-def spliced(ego: Ego, afters: list[Contact], befores: list[Contact]) -> Iterator[VelocityProfile]:
-    """Profiles with stepwise delays for these contacts, the most promising first; the caller checks them.
-
-    Parameters
-    ----------
-    afters, befores : for each window passed after (before), the least (largest) delay and where it binds.
+    Whether they are clear of the windows the caller checks: the corridor holds where the delay is constant.
     """
-    levels = _levels(afters, befores)
-    if levels is None:
-        return
-    passed = time_at(ego.alone, [s for _, s, _ in levels]).tolist()
-    for ending, share in product(_ENDINGS, _BEGINNINGS):
-        profile = _chain(ego, levels, passed, ending, share)
-        if profile is not None:
-            yield profile
+    for steps in stairs(bounds, delay, _stretch(ego), ego.length):
+        for sooner, later in _BEYOND if len(steps) > 1 else _BEYOND[:1]:
+            yield from _joined(ego, steps, sooner, later)
 
 
-def _levels(afters: list[Contact], befores: list[Contact]) -> list[tuple[float, float, float]] | None:
-    """Rising delays as (delay, arc length from which it must hold, arc length up to which the previous one must).
+def _stretch(ego: Ego) -> float:
+    """About the way [m] in which the robot stops from its largest speed and is as fast again."""
+    limits, speed = ego.robot.limits, float(ego.alone.states[:, 1].max())
+    largest = max(limits.acceleration, limits.deceleration)
+    return speed * (speed / 2 / limits.acceleration + speed / 2 / limits.deceleration + largest / limits.jerk)
 
-    Contacts are taken in the order of their places; None where a place must be passed before somebody with
-    less delay than a place behind it already needs.
+
+def _joined(ego: Ego, steps: Sequence[Step], sooner: float, later: float) -> list[VelocityProfile]:
+    """The alone profile through all steps, each joined by one arc."""
+    first = ego.alone.shifted(steps[0].delay)
+    found = [(first, first.departure)]
+    for before, step in itertools.pairwise(steps):
+        target = ego.alone.shifted(step.delay)
+        following = []
+        for profile, since in found:
+            arcs = _arcs(ego, profile, target, since, before.delay, step, sooner, later)
+            following += [arc for arc, _ in zip(arcs, range(_KEPT), strict=False)]
+        found = following[:_MOST]
+    return [profile for profile, _ in found]
+
+
+def _arcs(
+    ego: Ego, profile: VelocityProfile, target: VelocityProfile, since: float, delay: float, step: Step,
+    sooner: float, later: float,
+) -> Iterator[tuple[VelocityProfile, float]]:  # fmt: skip
+    """A profile joined with a target behind it, and when it is, longer arcs first.
+
+    Beside the longest arc there are those between the borders of bends: one may have to be crossed at its own speed.
     """
-    steps = sorted(
-        [_Step(contact, True) for contact in afters] + [_Step(contact, False) for contact in befores],
-        key=lambda step: (step.contact.s, step.is_after),
-    )
-    levels = [(0.0, 0.0, 0.0)]
-    bound_at = 0.0
-    for step in steps:
-        delay, s = step.contact.delay, step.contact.s
-        if step.is_after and delay > levels[-1][0]:
-            levels.append((delay, s, bound_at))
-        elif not step.is_after:
-            if delay < levels[-1][0]:
-                return None
-            bound_at = s
-    return levels
-
-
-def _chain(
-    ego: Ego, levels: list[tuple[float, float, float]], passed: list[float], ending: float, share: float
-) -> VelocityProfile | None:
-    """The alone profile through all levels, each joined by one arc; None where an arc does not exist.
-
-    ``passed`` : when the alone profile is at the place of each level [s].
-    """
-    current = ego.alone
-    earliest = current.departure
-    for (delay, _, kept_to), at in zip(levels[1:], passed[1:], strict=True):
-        target = ego.alone.shifted(delay)
-        end = at + delay + ending
-        if kept_to > 0:
-            earliest = max(float(time_at(current, kept_to)[0]), earliest)
-        begin = end - (end - earliest) * share
-        joined = _arc(ego, current, target, begin, min(end, target.arrival))
-        if joined is None:
-            return None
-        current, earliest = joined, end
-    return current
+    borders = ego.caps.ends[:-1]
+    borders = borders[(borders > step.allowed + _NEAR) & (borders < step.needed - _NEAR)]
+    places = np.concatenate([[step.allowed, step.needed], borders])
+    alone = time_at(ego.alone, places)
+    begin = max((float(alone[0]) + delay if step.allowed > 0 else profile.departure) - sooner, since)
+    end = min(float(alone[1]) + step.delay + later, target.arrival)
+    begins = [*(begin + (end - begin) * share for share in _BEGINNINGS), *(alone[2:] + delay).tolist()]
+    ends = [end, *(alone[:1:-1] + step.delay).tolist()]
+    spans = sorted(((a - b, b, a) for b in begins for a in ends if begin <= b < a <= end), reverse=True)
+    for _, b, a in spans[:_TRIED]:
+        arc = _arc(ego, profile, target, b, a)
+        if arc is not None and keeps_limits(arc, ego.robot.limits, ego.caps):
+            yield arc, a
 
 
 def _arc(
@@ -107,12 +101,12 @@ def _arc(
     start, goal = current.state(begin)[0], target.state(end)[0]
     if goal[0] < start[0]:
         return None
-    limits = ego.robot.limits
-    cap = float(ego.caps.lowest(start[:1], goal[:1])[0])
+    # it slows down at once, and may go into a bend faster than through it
+    cap = max(float(ego.caps.lowest(start[:1], goal[:1])[0]), float(start[1]), float(goal[1]))
     arc = motion(
         (float(start[0]), float(start[1]), float(start[2])),
         (float(goal[0]), float(goal[1]), float(goal[2])),
-        dataclasses.replace(limits, speed=cap),
+        dataclasses.replace(ego.robot.limits, speed=cap),
         end - begin,
     )
     return None if arc is None else _join(current, arc.shifted(begin), target)

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 
-from coord.alone.check import keeps_limits
 from coord.errors import SolverError
 from coord.model.profile import VelocityProfile
-from coord.timing.delay import Contact, after_contact, before_contact
+from coord.timing.corridor import Corridor, corridor
 from coord.timing.ego import Ego
 from coord.timing.meeting import Meeting, all_violated, first_violated
 from coord.timing.passing import Timing, passed
@@ -34,20 +33,18 @@ def equally_early(ego: Ego, meetings: list[Meeting], timing: Timing) -> list[Tim
     in_the_way = all_violated(meetings, ego.alone.shifted(delay))
     sooner = all_violated(meetings, ego.alone.shifted(delay - _A_LITTLE))
     reasons = [index for index in sooner if index not in in_the_way]
-    afters = [dataclasses.replace(after_contact(ego.alone, meetings[k].window), delay=delay) for k in reasons]
-    befores = [before_contact(ego.alone, meetings[k].window) for k in in_the_way]
+    bounds = corridor(ego.alone, *([meetings[index].window for index in some] for some in (reasons, in_the_way)))
     latest = timing.profile.arrival * (1 + OPTIMAL)
     found = []
-    for profile in _motions(ego, afters, befores):
-        is_clear = profile.arrival <= latest and first_violated(meetings, profile) is None
-        if is_clear and keeps_limits(profile, ego.robot.limits, ego.caps):
+    for profile in _motions(ego, bounds, delay):
+        if profile.arrival <= latest and first_violated(meetings, profile) is None:
             after, before = passed(meetings, profile)  # it may precede somebody whom the other one lets pass
             found.append(dataclasses.replace(timing, profile=profile, after=after, before=before, how="splice"))
     return found
 
 
-def _motions(ego: Ego, afters: list[Contact], befores: list[Contact]) -> list[VelocityProfile]:
+def _motions(ego: Ego, bounds: Corridor, delay: float) -> list[VelocityProfile]:
     try:
-        return list(spliced(ego, afters, befores))
+        return list(spliced(ego, bounds, delay))
     except SolverError:  # the robot has a profile already
         return []
