@@ -201,7 +201,7 @@ def _certified(search: Search, enough: float) -> tuple[float, list[int]]:
     for count, index in enumerate(near[:_MOST_MEETINGS], start=1):
         claims += claims_of(ego, search.forbidden(index))
         bound = max(bound, least_arrival(ego, claims, arrival, known=fits))
-        if bound >= arrival * (1 - (enough if count < len(known) else CLOSED)):
+        if bound >= arrival * (1 - (enough if count < len(known) else _ENOUGH)):
             break
     return bound, near
 
