@@ -29,7 +29,7 @@ from coord.timing.tube import Tube, after_bound, before_bound
 from coord.tolerances import OPTIMAL
 
 #: The bounds of bends are tightened in so many rounds before a program is solved; and where windows are refined.
-_SHARP, _SHARPER = 2, 4
+_SHARP, _SHARPER = 1, 4
 
 #: What a subproblem yields when it is still to be branched: no motion but a course that forgets the jerk.
 _COURSE = "course"

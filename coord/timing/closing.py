@@ -29,7 +29,7 @@ CLOSED = 1e-3
 #: The first step up from the bound: a share of it, and [s]. Steps then grow by a factor.
 _SHARE, _STEP, _GROWTH = 1e-3, 0.02, 4.0
 
-#: One question on the way up from the bound takes at most this share of all relaxations: a later arrival is easier.
+#: One question takes at most this share of all relaxations: a later arrival, or another course, may be easier.
 _A_QUESTION = 0.4
 
 #: So many times nothing may come of what seems possible: a later arrival seems so, too.
@@ -147,12 +147,13 @@ def close_gap(
     """
     fine = enough <= CLOSED or not decided
     chase = _Chase(ego, meetings, forbidden, near, best, bound, most=most, fine=fine)
-    _from_below(chase, enough)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
         others = _other_sides(chase)
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
+    if decided or enough <= CLOSED:
+        _from_below(chase, enough)
     if (decided or enough <= CLOSED) and (is_real or chase.best is not best):
         _halving(chase, enough)
     decided = decided or chase.is_closed(CLOSED)
@@ -161,7 +162,7 @@ def close_gap(
 
 def _other_sides(chase: _Chase) -> Verdict:
     """Whether anybody who passes some part on its other side could be earlier."""
-    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best))
+    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best), share=_A_QUESTION)
 
 
 def is_plainly_best(
@@ -169,7 +170,7 @@ def is_plainly_best(
     best: VelocityProfile,
 ) -> bool:  # fmt: skip
     """Whether a glance shows that no other choice of before and after saves more than the share CLOSED."""
-    chase = _Chase(ego, meetings, forbidden, near, best, ego.solo_bound, most=_GLANCE, fine=False)
+    chase = _Chase(ego, meetings, forbidden, near, best, ego.solo_bound, most=math.ceil(_GLANCE / _A_QUESTION), fine=False)
     return _other_sides(chase).cannot
 
 

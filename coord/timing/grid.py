@@ -26,15 +26,15 @@ from coord.tolerances import LIMIT_MARGIN, REGION_MARGIN, SAME_PLACE
 _FIRST_CELL = 0.25
 _GROWTH = 1.5
 
-#: [s] Longest cell where no window is, and where one is.
-_LONGEST_FREE, _LONGEST_TAKEN = 1.0, 0.25
+#: [s] Longest cell.
+_LONGEST = 1.0
 
-#: On long stretches without an event cells may last this share of the stretch.
+#: On long stretches without an event or a window cells may last this share of the stretch.
 _OF_STRETCH = 1 / 40
 
 #: [m] Cells on which a bound is off its chord by more than this, times the mesh, are cut, so often at most; but none
 #: that is shorter [s]: the solver fails where cells differ too much.
-_BENT, _CUTS, _UNCUT = 0.01, 6, 5e-3
+_BENT, _CUTS, _UNCUT = 0.025, 6, 5e-3
 
 #: Cells of a grid.
 _FEWEST_CELLS, _MOST_CELLS, _MOST_CELLS_OF_MANY = 8, 640, 4096
@@ -111,7 +111,7 @@ def time_knots(
             continue
         middle = (start + end) / 2
         is_taken = any(a < middle < b for a, b in spans)
-        longest = (_LONGEST_TAKEN if is_taken else max(_LONGEST_FREE, (end - start) * _OF_STRETCH)) * mesh
+        longest = (_LONGEST if is_taken else max(_LONGEST, (end - start) * _OF_STRETCH)) * mesh
         times += _graded(start, end, min(shortest, longest), longest)
     most = _MOST_CELLS_OF_MANY if many else _MOST_CELLS
     times = _bent_ones_cut(tube, times, _BENT * mesh, most) if cut else times

@@ -157,9 +157,10 @@ def _found(
     if bound < search.best.arrival * (1 - (CLOSED if is_open else _ENOUGH)) and search.sharpen():
         bound, near = _certified(search, CLOSED)
     is_open = is_open and bound < search.best.arrival * (1 - CLOSED)
-    is_open = is_open and not is_plainly_best(search.ego, meetings, search.forbidden, sorted(near), search.best)
-    if is_open and not effort and not hurried and len(search.known) <= _FEW:
-        return _Found(search, bound, nodes, True)
+    if is_open and not effort and len(search.known) <= _FEW:
+        is_open = not is_plainly_best(search.ego, meetings, search.forbidden, sorted(near), search.best)
+        if is_open:
+            return _Found(search, bound, nodes, True)
     for most, enough in _EFFORTS if certify else _EFFORTS[:1]:
         if bound < search.best.arrival * (1 - (CLOSED if is_open else enough)):
             # a proof that no other choice is better needs them all

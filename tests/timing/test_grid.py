@@ -117,10 +117,10 @@ def test_a_window_that_grows_within_a_moment_does_not_shut_out_who_is_two_centim
 
 @pytest.mark.parametrize("mesh", [1.0, 0.4, 0.16])
 def test_cells_are_short_where_bounds_are_bent(mesh):
-    """Where a cell is longer than 10 ms, the tube loses no more there than a centimetre times the mesh."""
+    """Where a cell is longer than 10 ms, the tube loses no more there than 25 mm times the mesh."""
     one = robot()
     tube = Tube([after_bound(block(20.0, 25.0, 14.0, 15.0))], [before_bound(steep(one, 12.0, 0.02))])
     times = time_knots(tube, 0.0, 40.0, LIMITS, mesh)
     off = off_chords(tube, times)
-    assert off[np.diff(times) > 0.01].max() <= 0.01 * mesh
-    assert off_chords(tube, np.array([0.0, 20.0, 25.0, 40.0])).max() > 0.01
+    assert off[np.diff(times) > 0.01].max() <= 0.025 * mesh
+    assert off_chords(tube, np.array([0.0, 20.0, 25.0, 40.0])).max() > 0.025
