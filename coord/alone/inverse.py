@@ -22,14 +22,14 @@ def time_at(profile: VelocityProfile, s: npt.ArrayLike) -> Array:
     k = np.maximum(np.minimum(knots.searchsorted(s, side="left") - 1, len(profile.jerks) - 1), 0)
     s0, v, a = profile.states[k].T
     h = np.diff(profile.times)[k]
-    u = increasing_root(np.stack([s0 - s, v, a / 2, profile.jerks[k] / 6]), h)
+    u = increasing_root((s0 - s, v, a / 2, profile.jerks[k] / 6), h)
     times = profile.times[k] + u
     times = np.where(s <= knots[0], profile.departure, times)
-    return np.where(s >= knots[-1], profile.times[np.searchsorted(knots, knots[-1])], times)
+    return np.where(s >= knots[-1], profile.times[knots.searchsorted(knots[-1])], times)
 
 
-def increasing_root(coefficients: Array, h: Array) -> Array:
-    """Roots (m,) in [0, h] of cubics that do not decrease there; coefficients (4, m), lowest first.
+def increasing_root(coefficients: tuple[Array, Array, Array, Array], h: Array) -> Array:
+    """Roots (m,) in [0, h] of cubics that do not decrease there; coefficients (m,) each, lowest first.
 
     Each is sought from the end whose value is nearer to 0: there a motion that comes to rest is flat, and its cubic is
     as good as one power.

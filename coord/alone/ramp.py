@@ -31,8 +31,11 @@ class Ramp:
     def time(self, distance: npt.ArrayLike) -> Array:
         """Least time (m,) [s] for the distances (m,) [m] from rest; 0 for distances below 0."""
         distance = np.atleast_1d(np.asarray(distance, dtype=np.float64))
-        beyond = np.maximum(distance - self.profile.length, 0.0)
-        return time_at(self.profile, np.maximum(distance, 0.0)) + beyond / self.speed
+        times = self.profile.arrival + np.maximum(distance - self.profile.length, 0.0) / self.speed
+        inside = distance < self.profile.length
+        if inside.any():
+            times[inside] = time_at(self.profile, np.maximum(distance[inside], 0.0))
+        return times
 
 
 def launch(limits: Limits) -> Ramp:

@@ -57,8 +57,8 @@ def inner_regions(region: ConflictRegion, length: float) -> tuple[ConflictRegion
         nodes = cell_nodes(np.concatenate([extent.ravel(), corner_nodes(blocks, every)]), first, last, region.cell)
     middle = (nodes[:-1] + nodes[1:]) / 2
     member, cell = np.nonzero((extent[:, :1] <= middle[None]) & (middle[None] <= extent[:, 1:]))
-    ends = [_clipped(blocks, member, nodes[cell + side]) for side in (0, 1)]
-    low, high = (np.stack([end[k] for end in ends], axis=1) for k in (0, 1))
+    ends = _clipped(blocks, np.tile(member, 2), nodes[np.concatenate([cell, cell + 1])])
+    low, high = (end.reshape(2, -1).T for end in ends)
     found = _inside(_joined(low, high, cell), length)
     return tuple(_part(nodes, found.of(chain)) for chain in _chains(found, length))
 

@@ -78,7 +78,7 @@ def window(
     times[-1] = profile.arrival if at_goal else times[-1]
     cuts = _cut(times, profile, bend)
     cell = np.clip(np.searchsorted(times, (cuts[:-1] + cuts[1:]) / 2, side="right") - 1, 0, len(nodes) - 2)
-    sigma = np.clip(profile.state(cuts)[:, 0], nodes[0], nodes[-1])
+    sigma = np.clip(profile.places(cuts), nodes[0], nodes[-1])
     low, high = _lines_over_time(region, profile, cuts, cell, sigma)
     if at_start and waits and cuts[0] > 0:
         cuts = np.concatenate([[0.0], cuts])

@@ -66,6 +66,19 @@ class VelocityProfile:
         states[at >= times[-1]] = self.states[-1]  # rest is rest, to the last digit
         return states
 
+    def places(self, t: Array) -> Array:
+        """Arc lengths (m,) [m] at the times t (m,) [s]: the first column of ``state``."""
+        if not len(self.jerks):
+            return np.full(len(t), self.states[0, 0])
+        times = self.times
+        at = np.minimum(np.maximum(t, times[0]), times[-1])
+        k = np.minimum(times.searchsorted(at, side="right") - 1, len(self.jerks) - 1)
+        s, v, a = self.states[k].T
+        h = at - times[k]
+        places = s + h * (v + h * (a / 2 + h * self.jerks[k] / 6))
+        places[at >= times[-1]] = self.states[-1, 0]
+        return np.asarray(places)
+
     def place(self, t: float) -> float:
         """The arc length [m] at one time [s]: as ``state`` has it, several times as quickly."""
         if t <= self.times[0] or t >= self.times[-1] or not len(self.jerks):

@@ -81,7 +81,7 @@ def forbidden(ego: Ego, meeting: Meeting) -> list[Forbidden]:
         times = _moments(region, meeting.profile)
         if len(times):
             lasts = meeting.ends.other_parks and bool(region.sigma[-1] >= meeting.profile.length)
-            found.append((times, *_ends(region, meeting.profile.state(times)[:, 0]), lasts))
+            found.append((times, *_ends(region, meeting.profile.places(times)), lasts))
     return found
 
 
@@ -107,15 +107,16 @@ def parts_of(ego: Ego, truly: Sequence[Forbidden]) -> list[Part]:
 
 def _claim(ego: Ego, times: Array, low: Array, high: Array, lasts: bool) -> Claim:
     length = ego.length
-    at, past = np.clip(low, 0.0, length), np.clip(high, 0.0, length)
+    at, past = np.minimum(np.maximum(low, 0.0), length), np.minimum(np.maximum(high, 0.0), length)
+    at_clock, past_clock = clock(ego.relaxed, at), clock(ego.relaxed, past)
     after = np.inf
     if not lasts and float(low.min()) >= -SAME_PLACE:
-        after = float((times + still_needed(ego, at))[low < length].max(initial=-np.inf))
-    is_late = (earliest(ego, past) > times) & (high > 0)
+        after = float((times + still_needed(ego, at, at_clock))[low < length].max(initial=-np.inf))
+    is_late = (earliest(ego, past, past_clock) > times) & (high > 0)
     can_precede = float(high.max()) <= length + SAME_PLACE and not is_late.any()
     order = np.argsort(times, kind="stable")
-    since = np.where(low < length, clock(ego.relaxed, at), np.inf)
-    by = np.where(high > 0, clock(ego.relaxed, past), -np.inf)
+    since = np.where(low < length, at_clock, np.inf)
+    by = np.where(high > 0, past_clock, -np.inf)
     leaves, since = times[order], since[order]
     return Claim(after, can_precede, leaves, since, times, by, _tight(ego, leaves, since, times, by))
 
@@ -269,7 +270,7 @@ def _moments(part: ConflictRegion, profile: VelocityProfile) -> Array:
         return np.array([0.0]) if part.sigma[0] <= 0 <= part.sigma[-1] else np.empty(0)
     times = np.unique(np.concatenate([[0.0], time_at(profile, part.sigma), profile.times]))
     times = np.concatenate([times, (times[:-1] + times[1:]) / 2])
-    sigma = profile.state(times)[:, 0]
+    sigma = profile.places(times)
     return np.sort(times[(sigma >= part.sigma[0]) & (sigma <= part.sigma[-1])])
 
 

@@ -60,22 +60,28 @@ def excess(profile: VelocityProfile, window: Window) -> Excess:
     else:
         jerk = np.zeros_like(start)
     state[~moving, 1:] = 0.0
-    over = _highest(state, jerk, h, *_line(window.low, edges, strip, start))
-    value, slope = _line(window.high, edges, strip, start)
-    under = _highest(-state, -jerk, h, -value, -slope)
+    # how far the cubics are above the lower line, and below the upper one, for both at once
+    since, n = start - edges[strip], len(start)
+    (low, low_slope), (high, high_slope) = (_line(line, edges, strip, since) for line in (window.low, window.high))
+    s, v, c2 = state[:, 0], state[:, 1], state[:, 2] / 2
+    c3 = jerk / 6
+    most = _highest(
+        np.concatenate([s - low, high - s]), np.concatenate([v - low_slope, high_slope - v]),
+        np.concatenate([c2, -c2]), np.concatenate([c3, -c3]), np.concatenate([h, h]),
+    )  # fmt: skip
+    over, under = most[:n], most[n:]
     both = np.flatnonzero((over > SLACK) & (under > SLACK))
     return Excess(float(over.max()), float(under.max()), float(start[both[0]]) if len(both) else np.inf)
 
 
-def _line(bound: Array, edges: Array, strip: npt.NDArray[np.intp], start: Array) -> tuple[Array, Array]:
-    """Values of the strips' lines at the start of each part, and their slopes."""
-    slope = (bound[strip, 1] - bound[strip, 0]) / (edges[strip + 1] - edges[strip])
-    return bound[strip, 0] + slope * (start - edges[strip]), slope
+def _line(bound: Array, edges: Array, strip: npt.NDArray[np.intp], since: Array) -> tuple[Array, Array]:
+    """Values of the strips' lines some time [s] after their beginnings, and their slopes."""
+    slope = ((bound[:, 1] - bound[:, 0]) / (edges[1:] - edges[:-1]))[strip]
+    return bound[strip, 0] + slope * since, slope
 
 
-def _highest(state: Array, jerk: Array, h: Array, value: Array, slope: Array) -> Array:
-    """Largest s(u) - line(u) on [0, h] for cubics s: at the ends or where the derivative vanishes."""
-    c0, c1, c2, c3 = state[:, 0] - value, state[:, 1] - slope, state[:, 2] / 2, jerk / 6
+def _highest(c0: Array, c1: Array, c2: Array, c3: Array, h: Array) -> Array:
+    """Largest values of cubics on [0, h]: at the ends or where the derivative vanishes."""
     root = np.sqrt(np.maximum(c2 * c2 - 3 * c1 * c3, 0.0))
     # both roots of c1 + 2 c2 u + 3 c3 u^2, written so that neither loses its digits
     q = -(c2 + np.where(c2 >= 0, root, -root))

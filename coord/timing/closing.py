@@ -148,7 +148,7 @@ def close_gap(
     fine = enough <= CLOSED or not decided
     chase = _Chase(ego, meetings, forbidden, near, best, bound, most=most, fine=fine)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
-        others = _other_sides(chase)
+        others = _other_sides(chase, _A_QUESTION)
         decided = others.cannot
         if not decided and not chase.follow(others):
             break
@@ -160,9 +160,9 @@ def close_gap(
     return Closing(chase.best, chase.best is not best, min(chase.bound, chase.best.arrival), decided)
 
 
-def _other_sides(chase: _Chase) -> Verdict:
+def _other_sides(chase: _Chase, share: float) -> Verdict:
     """Whether anybody who passes some part on its other side could be earlier."""
-    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best), share=_A_QUESTION)
+    return chase.asked(chase.best.arrival * (1 - CLOSED), sides_of(chase.parts, chase.best), share)
 
 
 def is_plainly_best(
@@ -170,8 +170,8 @@ def is_plainly_best(
     best: VelocityProfile,
 ) -> bool:  # fmt: skip
     """Whether a glance shows that no other choice of before and after saves more than the share CLOSED."""
-    chase = _Chase(ego, meetings, forbidden, near, best, ego.solo_bound, most=math.ceil(_GLANCE / _A_QUESTION), fine=False)
-    return _other_sides(chase).cannot
+    chase = _Chase(ego, meetings, forbidden, near, best, ego.solo_bound, most=_GLANCE, fine=False)
+    return _other_sides(chase, 1.0).cannot
 
 
 def _from_below(chase: _Chase, enough: float) -> None:

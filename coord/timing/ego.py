@@ -70,15 +70,15 @@ def sharpened(one: Ego, rounds: int) -> Ego:
     return dataclasses.replace(one, bends=bends, solo_bound=bound)
 
 
-def earliest(one: Ego, s: Array) -> Array:
-    """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]."""
-    clocks = clock(one.relaxed, s)
+def earliest(one: Ego, s: Array, clocks: Array | None = None) -> Array:
+    """The earliest times (m,) [s] at which it can be at the arc lengths s (m,) [m]; ``clocks``: these in its clock."""
+    clocks = clock(one.relaxed, s) if clocks is None else clocks
     clocks = clocks if one.bends is None else one.bends.earliest(s, clocks)
     return one.alone.departure + np.maximum(one.launch.time(s), clocks)
 
 
-def still_needed(one: Ego, s: Array) -> Array:
-    """The least times (m,) [s] that it still needs from the arc lengths s (m,) [m] to rest at its goal."""
-    left = one.relaxed.arrival - clock(one.relaxed, s)
+def still_needed(one: Ego, s: Array, clocks: Array | None = None) -> Array:
+    """The least times (m,) [s] that it still needs from there to rest at its goal; as for ``earliest``."""
+    left = one.relaxed.arrival - (clock(one.relaxed, s) if clocks is None else clocks)
     left = left if one.bends is None else one.bends.needed(s, left)
     return np.maximum(one.landing.time(one.length - s), left)

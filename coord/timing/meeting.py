@@ -90,7 +90,7 @@ class Meeting:
                 return side
             self._spans = _spans(self.window)
         times, low, high = self._spans
-        s = profile.state(times)[:, 0]
+        s = profile.places(times)
         if bool((s[1:] <= low).all()):
             return True
         return False if bool((s[:-1] >= high).all()) else None

@@ -122,7 +122,7 @@ def sides_of(parts: Sequence[Part], profile: VelocityProfile) -> dict[int, bool]
     """On which side of each part a profile passes; after: True."""
     found = {}
     for k, one in enumerate(parts):
-        s = profile.state(one.times)[:, 0]
+        s = profile.places(one.times)
         found[k] = bool((s - one.low).max() < (one.high - s).max())
     return found
 

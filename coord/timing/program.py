@@ -270,7 +270,7 @@ def course_of(profile: VelocityProfile, since: float) -> Course:
     """The course of a profile, the wait from ``since`` [s] to its departure included."""
     even = np.linspace(profile.departure, profile.arrival, _SAMPLES)
     times = np.unique(np.concatenate([[min(since, profile.departure)], profile.times, even]))
-    return Course(times, np.maximum.accumulate(profile.state(times)[:, 0]))
+    return Course(times, np.maximum.accumulate(profile.places(times)))
 
 
 def held_until(ego: Ego, tube: Tube) -> float:

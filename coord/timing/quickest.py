@@ -58,7 +58,7 @@ class Ramps:
         bent = phase < 3
         if bent.any():
             k, p = row[bent], phase[bent]
-            cubic = np.stack([-more[bent], v[bent], a[bent] / 2, self.jerks[p] / 6])
+            cubic = (-more[bent], v[bent], a[bent] / 2, self.jerks[p] / 6)
             times[bent] = begin[bent] + increasing_root(cubic, self.knots[k, p + 1] - begin[bent])
         return np.asarray(times)
 

@@ -93,7 +93,7 @@ def soonest(ego: Ego, times: Array, high_times: Array, high: Array) -> Array:
     """The largest arc lengths (m,) [m] at the times (m,) [s], below bounds (n,) [m] at increasing times (n,) [s]."""
     bounds = Marks(high_times, clock(ego.relaxed, high), np.empty(0), np.empty(0))
     _, most = _narrowed(bounds, times, np.zeros(len(times)), _earliest(ego, times))
-    return ego.relaxed.state(np.maximum(most, 0.0))[:, 0]
+    return ego.relaxed.places(np.maximum(most, 0.0))
 
 
 def ranges(reach: Reach, bounds: Marks, times: Array) -> tuple[Array, Array]:
@@ -192,4 +192,4 @@ def _latest(ego: Ego, arrival: float, times: Array) -> Array:
 def _way(ramp: Ramp, times: Array) -> Array:
     """How far (m,) [m] the ramp gets in the times (m,) [s]."""
     profile = ramp.profile
-    return np.asarray(profile.state(times)[:, 0] + ramp.speed * np.maximum(times - profile.arrival, 0.0))
+    return np.asarray(profile.places(times) + ramp.speed * np.maximum(times - profile.arrival, 0.0))

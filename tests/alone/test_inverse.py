@@ -70,7 +70,7 @@ def test_the_root_of_an_increasing_cubic_is_found(c1, c2, c3, h, share):
     """The value there is 0 up to rounding, wherever in the interval the root lies and however flat the cubic is."""
     u = share * h
     c0 = -u * (c1 + u * (c2 + u * c3))
-    root = increasing_root(np.array([[c0], [c1], [c2], [c3]]), np.array([h]))[0]
+    root = increasing_root(tuple(np.array([c]) for c in (c0, c1, c2, c3)), np.array([h]))[0]
     assert 0 <= root <= h
     scale = h * (c1 + h * (c2 + h * c3))
     assert abs(c0 + root * (c1 + root * (c2 + root * c3))) <= 1e-13 * (scale + 1)
