@@ -52,6 +52,7 @@ class Search:
     known : meetings, by index, that came up.
     effort : how much time may be spent: 0 where a closer search may follow, else 1, or 2 for the closest there is.
     sharp : rounds in which the bounds of bends were tightened.
+    failed : choices that contradict nothing, but no program found a motion with them.
     """
 
     ego: Ego
@@ -67,6 +68,7 @@ class Search:
     known: set[int] = field(default_factory=set)
     effort: int = 0
     sharp: int = 0
+    failed: list[dict[int, bool]] = field(default_factory=list)
 
     def window(self, index: int) -> Window:
         """The window of a meeting."""
@@ -222,6 +224,7 @@ def _relaxed(
 
     program = through_tube(ego, tube, bound, most, near or course, effort=search.effort, is_enough=runs_elsewhere)
     if program is None or not _keeps_choices(search, chosen, program):
+        search.failed.append(chosen)
         return None, ""
     return program, "program"
 

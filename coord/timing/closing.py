@@ -71,12 +71,13 @@ class _Chase:
     def __init__(
         self, ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]],
         near: Sequence[int], best: VelocityProfile, bound: float, *, most: int, fine: bool,
+        failed: Sequence[Mapping[int, bool]] = (),
     ) -> None:  # fmt: skip
         self.ego, self.meetings, self.best, self.bound = ego, meetings, best, bound
         self.forbidden = forbidden
         self.most, self.fine, self.programs = most, fine, 0
         self.near: list[int] = []
-        self.failed: set[frozenset[tuple[int, bool]]] = set()
+        self.failed = list(failed)
         self.parts: list[Part] = []
         self.owners: list[int] = []
         for index in near:
@@ -113,12 +114,11 @@ class _Chase:
             return False
         chosen = {index: _passes_after(verdict.course, self.meetings[index].window) for index in self.near}
         chosen |= {self.owners[k]: after for k, after in verdict.sides.items()}
-        sides = frozenset(chosen.items())
-        if sides in self.failed:
+        if any(failed.items() <= chosen.items() for failed in self.failed):  # there is less room yet
             return False
         profile = _along(self.ego, self.meetings, chosen, verdict.course, self.bound, self.best.arrival * (1 - _WORTH))
         if profile is None:
-            self.failed.add(sides)
+            self.failed.append(chosen)
             return False
         violated = first_violated(list(self.meetings), profile)
         if violated is None:
@@ -133,6 +133,7 @@ class _Chase:
 def close_gap(
     ego: Ego, meetings: Sequence[Meeting], forbidden: Callable[[int], Sequence[Forbidden]], near: Sequence[int],
     best: VelocityProfile, bound: float, *, most: int, enough: float, decided: bool, is_real: bool,
+    failed: Sequence[Mapping[int, bool]] = (),
 ) -> Closing:  # fmt: skip
     """Raise a certified bound [s] and improve on a profile until they are as good as equal.
 
@@ -144,9 +145,10 @@ def close_gap(
     enough : gaps below this share of the arrival are left; CLOSED or less asks for a finer relaxation, too.
     decided : whether it is known already that no other choice of before and after is better.
     is_real : whether the profile can be driven, or only stands for one that is sought: then the bound is of no use.
+    failed : sides of meetings with which no motion was found.
     """
     fine = enough <= CLOSED or not decided
-    chase = _Chase(ego, meetings, forbidden, near, best, bound, most=most, fine=fine)
+    chase = _Chase(ego, meetings, forbidden, near, best, bound, most=most, fine=fine, failed=failed)
     while not decided and not chase.is_spent and not chase.is_closed(CLOSED):
         others = _other_sides(chase, _A_QUESTION)
         decided = others.cannot

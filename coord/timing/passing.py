@@ -168,7 +168,7 @@ def _found(
             closing = close_gap(
                 search.ego, meetings, search.forbidden, some, search.best, bound,
                 most=most if certify or len(near) <= _FEW else _MOST_OF_MANY, enough=enough,
-                decided=not is_open, is_real=search.how != _NONE,
+                decided=not is_open, is_real=search.how != _NONE, failed=search.failed,
             )  # fmt: skip
             bound, is_open = closing.bound, not closing.is_decided
             if closing.is_new:
