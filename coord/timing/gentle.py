@@ -6,8 +6,12 @@ more it can roll, slow down in time instead of standing, and brake softly.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from coord.model.profile import VelocityProfile
 from coord.timing.ego import Ego
+from coord.timing.grid import Course
+from coord.timing.haste import hasty_course
 from coord.timing.meeting import Meeting, all_violated
 from coord.timing.program import course_of, smooth_through
 from coord.timing.tube import Tube, after_bound, before_bound
@@ -19,10 +23,10 @@ _SHARE = 0.07
 
 #: [s] On paths with bends it may arrive later by so much more, because the cells lose something at every bend; by
 #: the second where the first is too little.
-_FOR_BENDS = (0.06, 0.2)
+_FOR_BENDS = (0.03, 0.15)
 
 #: Scales of the cells, of the program's: the coarser one is for tubes for which the finer one would be too large.
-_MESHES = (0.5, 1.25)
+_MESHES = (0.25, 0.8)
 
 #: [1/s2] Weight of the squared acceleration beside the squared jerk.
 _EASE = 0.1
@@ -47,13 +51,13 @@ def _arriving(
 ) -> VelocityProfile | None:
     """The same with a given arrival [s]."""
     sides = {index: meetings[index].passes_after(quickest) for index in known}
-    course = None if ego.caps.is_constant else course_of(quickest, ego.alone.departure)
     for _ in range(_ROUNDS):
         tube = Tube(
             [after_bound(meetings[index].window) for index, after in sides.items() if after],
             [before_bound(meetings[index].window) for index, after in sides.items() if not after],
         )
-        found = (smooth_through(ego, tube, arrival, mesh, _EASE, course) for mesh in _MESHES)
+        courses = _courses(ego, tube, quickest)
+        found = (smooth_through(ego, tube, arrival, mesh, _EASE, course) for course in courses for mesh in _MESHES)
         profile = next((one for one in found if one is not None), None)
         if profile is None:
             return None
@@ -64,3 +68,12 @@ def _arriving(
             return None
         sides |= {index: meetings[index].passes_after(quickest) for index in violated}
     return None
+
+
+def _courses(ego: Ego, tube: Tube, quickest: VelocityProfile) -> Iterator[Course | None]:
+    """What tells which cells are in which bend: where the quickest is when, or one in haste, who stands less."""
+    if ego.caps.is_constant:
+        yield None
+        return
+    yield course_of(quickest, ego.alone.departure)
+    yield hasty_course(ego, tube)
