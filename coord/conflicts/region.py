@@ -19,6 +19,9 @@ from coord.conflicts.core import POINT, Core
 from coord.model.arrays import Array, frozen
 from coord.tolerances import REGION_CELL, SAME_PLACE
 
+#: So many cells at most are made one where no bound is off a straight line by this much [m] from one to the next.
+_JOINED, _STRAIGHT = 8, 1e-11
+
 #: Further nodes towards the ends of a region, as shares of a cell: its boundary is steep there.
 _END_NODES = (0.0625, 0.25)
 
@@ -105,7 +108,22 @@ def _region(blocks: Blocks, members: npt.NDArray[np.intp], longest: float = REGI
     lows, highs = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(lows, cell, low)
     np.maximum.at(highs, cell, high)
-    return ConflictRegion(frozen(nodes), frozen(lows), frozen(highs), blocks.of(members), longest)
+    return ConflictRegion(*_joined(nodes, lows, highs), blocks.of(members), longest)
+
+
+def _joined(nodes: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
+    """The same with cells made one on which both bounds go on straight, as on lanes, up to so many of them."""
+    straight = np.ones(max(len(low) - 1, 0), bool)
+    for line in (low, high):
+        slope = (line[:, 1] - line[:, 0]) / np.diff(nodes)
+        bends = np.abs(np.diff(slope)) * np.maximum(nodes[2:] - nodes[1:-1], nodes[1:-1] - nodes[:-2])
+        straight &= (np.abs(line[1:, 0] - line[:-1, 1]) < _STRAIGHT) & (bends < _STRAIGHT)
+    breaks = np.flatnonzero(~straight) + 1
+    since = np.arange(len(low)) - np.concatenate([[0], breaks])[np.searchsorted(breaks, np.arange(len(low)), "right")]
+    first = np.flatnonzero(since % _JOINED == 0)
+    last = np.append(first[1:], len(low)) - 1
+    ends = [np.stack([line[first, 0], line[last, 1]], axis=1) for line in (low, high)]
+    return np.append(nodes[first], nodes[-1]), ends[0], ends[1]
 
 
 def cell_nodes(given: Array, first: float, last: float, longest: float) -> Array:

@@ -69,11 +69,45 @@ def test_following_on_one_line_is_a_band():
     assert region.high == pytest.approx(ahead + reach, abs=2e-6)
 
 
+def test_cells_of_a_lane_are_made_one():
+    """Along 14 m of one line bounds are straight: cells of 40 cm do there, not 5 cm."""
+    ego, other = straight((0, 0), (20, 0)), straight((3, 0), (17, 0))
+    (region,) = conflict_regions(chords(ego), chords(other), 0.65, start_free=True, goal_free=True)
+    assert len(region.low) < 60
+    assert np.diff(region.sigma).max() == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("kinds", [("line",), ("line", "arc")], ids="-".join)
+def test_cells_made_one_forbid_the_same(wild_path, regions, monkeypatch, kinds):
+    """Of 60 pairs of random paths the bounds anywhere are those of the single cells, to a millionth of a millimetre."""
+    rng, joined = np.random.default_rng(5), 0
+    pairs = [(wild_path(rng, kinds), wild_path(rng, kinds), rng.uniform(0.3, 1.2)) for _ in range(60)]
+    ways = ((3.0, 0, 0), (2.0, 0.6, 0.6), (3.0, 0, 0))
+    pairs.append((Path((0, 0, 0), ways), Path((-1, 0.1, 0), ways), 0.5))  # behind each other along lines
+    found = [regions(*pair) for pair in pairs]
+    monkeypatch.setattr("coord.conflicts.region._JOINED", 1)
+    for few, many in zip(found, [regions(*pair) for pair in pairs], strict=True):
+        for one, other in zip(few, many, strict=True):
+            joined += len(other.low) - len(one.low)
+            places = (other.sigma[:-1] + other.sigma[1:]) / 2
+            for bounds in ("low", "high"):
+                assert _line_at(one, bounds, places) == pytest.approx(_line_at(other, bounds, places), abs=1e-9)
+    assert joined > 40
+
+
+def _line_at(region, bounds, sigma):
+    """A bound at some places of the other's path."""
+    line, cell = getattr(region, bounds), np.searchsorted(region.sigma, sigma, side="right") - 1
+    share = (sigma - region.sigma[cell]) / np.diff(region.sigma)[cell]
+    return line[cell, 0] + (line[cell, 1] - line[cell, 0]) * share
+
+
 def test_oncoming_on_one_line_is_a_band_the_other_way():
     """Forbidden are all s within reach of 20 - sigma."""
     ego, other, reach = straight((0, 0), (20, 0)), straight((20, 0), (0, 0)), 0.65
     (region,) = conflict_regions(chords(ego), chords(other), reach)
-    inside = slice(20, -20)
+    inside = (region.sigma[:-1] > 1.0) & (region.sigma[1:] < 19.0)
+    assert inside.sum() > 20
     facing = 20 - np.stack([region.sigma[:-1], region.sigma[1:]], axis=1)
     assert region.low[inside] == pytest.approx(facing[inside] - reach, abs=2e-6)
     assert region.high[inside] == pytest.approx(facing[inside] + reach, abs=2e-6)
