@@ -60,7 +60,7 @@ def corridor(profile: VelocityProfile, afters: Sequence[Window], befores: Sequen
 
 
 def stairs(bounds: Corridor, delay: float, stretch: float, length: float) -> Iterator[tuple[Step, ...]]:
-    """Ways to rise within the corridor to a last delay [s], the most promising first; the first step is at the start.
+    """Ways to rise on the way to a last delay [s], the most promising first; the first of all steps is at the start.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def stairs(bounds: Corridor, delay: float, stretch: float, length: float) -> Ite
     for room in _ROOMS:
         for first in dict.fromkeys((allowed, 0.0)):
             steps = _stairs(bounds, first, delay, room * stretch, length)
-            if steps is not None and steps not in found:
+            if steps is not None and len(steps) > 1 and steps not in found:
                 found.add(steps)
                 yield steps
 

@@ -44,7 +44,7 @@ def spliced(ego: Ego, bounds: Corridor, delay: float) -> Iterator[VelocityProfil
     Whether they are clear of the windows the caller checks: the corridor holds where the delay is constant.
     """
     for steps in stairs(bounds, delay, _stretch(ego), ego.length):
-        for sooner, later in _BEYOND if len(steps) > 1 else _BEYOND[:1]:
+        for sooner, later in _BEYOND:
             yield from _joined(ego, steps, sooner, later)
 
 

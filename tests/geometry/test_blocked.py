@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from coord.geometry.blocked import Floor
@@ -21,6 +21,7 @@ OBSTACLES = [
     Polygon("l", np.array([(6, 6), (10, 6), (10, 7), (7, 7), (7, 10), (6, 10)], float)),
 ]
 REACH = 0.4
+ROUNDING = 1e-12  # of angles [rad]
 places = st.tuples(st.floats(0.5, 11.5), st.floats(0.5, 11.5))
 
 
@@ -55,6 +56,7 @@ def test_a_segment_hits_the_parts_that_some_of_its_points_are_too_near_to(floor,
 
 @settings(deadline=None, derandomize=True, max_examples=100)
 @given(places, st.floats(0.05, 3.0))
+@example(center=(7.0, 6.6), radius=3.0)  # two stretches meet at 0 but for a rounding, in the middle of an edge
 def test_blocked_angles_are_those_at_which_the_circle_is_too_near(floor, center, radius):
     """Against 1,440 points: blocked exactly where one is too near to a part's outline or beyond the box.
 
@@ -72,7 +74,7 @@ def test_blocked_angles_are_those_at_which_the_circle_is_too_near(floor, center,
     clear = np.minimum(np.min(to_outline, axis=0), edge)
     blocked = np.zeros(len(angles), bool)
     for first, last in stretches.tolist():
-        blocked |= (angles - first) % (2 * np.pi) < last - first
+        blocked |= (angles - first + ROUNDING) % (2 * np.pi) < last - first + 2 * ROUNDING
     assert np.all(blocked[clear < -1e-7])
     assert not np.any(blocked[(clear > 1e-7) & (clearances(floor, at).min(axis=0) > 1e-7)])
 
