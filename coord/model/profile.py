@@ -59,25 +59,27 @@ class VelocityProfile:
         asked = np.atleast_1d(np.asarray(t, dtype=np.float64))
         if not len(self.jerks):
             return np.repeat(self.states[:1], len(asked), axis=0)
-        times = self.times
-        at = np.minimum(np.maximum(asked, times[0]), times[-1])
-        k = np.minimum(times.searchsorted(at, side="right") - 1, len(self.jerks) - 1)
-        states = advance(self.states[k], self.jerks[k], at - times[k])
-        states[at >= times[-1]] = self.states[-1]  # rest is rest, to the last digit
+        k, since = self._phases(asked)
+        states = advance(self.states[k], self.jerks[k], since)
+        states[asked >= self.times[-1]] = self.states[-1]  # rest is rest, to the last digit
         return states
 
     def places(self, t: Array) -> Array:
         """Arc lengths (m,) [m] at the times t (m,) [s]: the first column of ``state``."""
         if not len(self.jerks):
             return np.full(len(t), self.states[0, 0])
+        k, h = self._phases(t)
+        s, v, a = self.states[k].T
+        places = s + h * (v + h * (a / 2 + h * self.jerks[k] / 6))
+        places[t >= self.times[-1]] = self.states[-1, 0]
+        return np.asarray(places)
+
+    def _phases(self, t: Array) -> tuple[npt.NDArray[np.intp], Array]:
+        """The phases (m,) in which the times t (m,) [s] lie, or the nearer end, and how long [s] they last by then."""
         times = self.times
         at = np.minimum(np.maximum(t, times[0]), times[-1])
         k = np.minimum(times.searchsorted(at, side="right") - 1, len(self.jerks) - 1)
-        s, v, a = self.states[k].T
-        h = at - times[k]
-        places = s + h * (v + h * (a / 2 + h * self.jerks[k] / 6))
-        places[at >= times[-1]] = self.states[-1, 0]
-        return np.asarray(places)
+        return k, at - times[k]
 
     def place(self, t: float) -> float:
         """The arc length [m] at one time [s]: as ``state`` has it, several times as quickly."""

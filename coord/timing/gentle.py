@@ -51,13 +51,14 @@ def _arriving(
 ) -> VelocityProfile | None:
     """The same with a given arrival [s]."""
     sides = {index: meetings[index].passes_after(quickest) for index in known}
+    course = None if ego.caps.is_constant else course_of(quickest, ego.alone.departure)
     for _ in range(_ROUNDS):
         tube = Tube(
             [after_bound(meetings[index].window) for index, after in sides.items() if after],
             [before_bound(meetings[index].window) for index, after in sides.items() if not after],
         )
-        courses = _courses(ego, tube, quickest)
-        found = (smooth_through(ego, tube, arrival, mesh, _EASE, course) for course in courses for mesh in _MESHES)
+        courses = _courses(ego, tube, course)
+        found = (smooth_through(ego, tube, arrival, mesh, _EASE, one) for one in courses for mesh in _MESHES)
         profile = next((one for one in found if one is not None), None)
         if profile is None:
             return None
@@ -70,10 +71,8 @@ def _arriving(
     return None
 
 
-def _courses(ego: Ego, tube: Tube, quickest: VelocityProfile) -> Iterator[Course | None]:
+def _courses(ego: Ego, tube: Tube, quickest: Course | None) -> Iterator[Course | None]:
     """What tells which cells are in which bend: where the quickest is when, or one in haste, who stands less."""
-    if ego.caps.is_constant:
-        yield None
-        return
-    yield course_of(quickest, ego.alone.departure)
-    yield hasty_course(ego, tube)
+    yield quickest
+    if quickest is not None:
+        yield hasty_course(ego, tube)
